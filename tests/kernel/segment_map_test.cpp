@@ -44,7 +44,7 @@ struct Segment {
 };
 
 TEST(SegmentMap, MapsEverySegmentByItsTableAndNothingElse) {
-  constexpr std::size_t kPacks = 3;
+  constexpr std::size_t kPacks = 5;  // three at a time, and two one by one
   const Rows from(kPacks, 40, 1);
   Rows to(kPacks, 50, 2);
   const Rows before(kPacks, 50, 2);

@@ -58,6 +58,8 @@ const std::vector<Fault>& faults() {
       {"segments", "STORE_PACK(LOAD_PACK(at, out) + sum, at, out);", "STORE_PACK(1.000001 * sum, at, out);",
        "sum_segments.cl"},
       {"segment_map", "c##k = fma(value2, t, c##k);", "c##k = fma(value1, t, c##k);", "map_segments.cl"},
+      {"segment_map_of_pack", "only##k = fma(value, (pack)(row[k]), only##k);",
+       "only##k = fma(value, (pack)(row[0]), only##k);", "map_segments.cl"},
       {"map", "value += term_weight[t] * samples", "value += 1.000001 * term_weight[t] * samples", "map_linear"},
       {"cube_root", "r -= fma(square, r, -a) / ((pack)(3.0) * square);",
        "r -= fma(square, r, -a) / ((pack)(3.1) * square); r += (pack)(1e-9) * r;", "map_cube_root"},

@@ -479,8 +479,28 @@ TEST_P(AlbedoWork, OfMoreKinksThanPanelsEndOnTakesOneRuleForAll) {
   EXPECT_EQ(work.evaluations, 6 * work.nodes);
 }
 
+TEST_P(AlbedoWork, OfAnisotropicLobesIsNotMultipliedByKinksOfOthers) {
+  const WorkDone work =
+      of({"ggx_anisotropic:alpha_x=0.3,alpha_y=0.5", "lafortune_anisotropic:c_x=-0.9,c_y=-0.8,c_z=0.9,n=3"});
+  EXPECT_LT(work.evaluations, 2 * work.nodes);
+}
+
 INSTANTIATE_TEST_SUITE_P(Lighting, AlbedoWork, ::testing::Values(Lighting::daylight(), Lighting::mean_albedo()),
                          [](const auto& test) { return test_name(test.param.name()); });
+
+WorkDone patch_work_of(const std::vector<std::string>& specifications) {
+  return measure(device(), parse_all(specifications), Lighting::patch(0.5), {.patch_tolerance = 1e-2}).work;
+}
+
+TEST(PatchWork, OfLobesWithKinksOfTheirOwnTakesARuleForEach) {
+  const WorkDone apart = patch_work_of({"retro_patch:R=0.3", "exponential_patch:s=5"});
+  EXPECT_EQ(apart.evaluations, apart.nodes);
+}
+
+TEST(PatchWork, OfMixturesTakesOneRuleForAllThatTheyHaveInCommon) {
+  const WorkDone mixed = patch_work_of({"lambert:scale=0.4+exponential_patch:s=5,scale=0.5"});
+  EXPECT_GT(mixed.evaluations, mixed.nodes);
+}
 
 TEST(Albedo, IsLinearInSumsOfTerms) {
   const std::vector<double> theta{0.2, 1.4};

@@ -7,14 +7,9 @@
 #include "device/self_test.hpp"
 
 namespace lobe {
-namespace {
-
-constexpr std::size_t kMapTile = 8;  // of map_segments.cl
-
-}  // namespace
 
 std::size_t SegmentTable::padded(std::size_t columns) {
-  return (columns + kMapTile - 1) / kMapTile * kMapTile;
+  return (columns + kTile - 1) / kTile * kTile;
 }
 
 void SegmentTable::clear() {
@@ -45,9 +40,11 @@ void SegmentTable::add_as(std::size_t segment, std::size_t source, std::size_t s
 }
 
 SegmentMap::SegmentMap(const Device& device) : device_(device) {
-  kernel_ = checked("cannot prepare maps of segments", [&] {
-    return make_kernel(build_program(device_, {"prelude.clh", "products/map_segments.cl"}, Precision::double_precision),
-                       "map_segments", 6);
+  checked("cannot prepare maps of segments", [&] {
+    const auto program =
+        build_program(device_, {"prelude.clh", "products/map_segments.cl"}, Precision::double_precision);
+    triples_ = make_kernel(program, "map_segments", 6);
+    singles_ = make_kernel(program, "map_segments_of_pack", 7);
   });
   require_sound(device_, "map_segments.cl", [&] { return test_segment_map(device_); });
 }
@@ -62,10 +59,17 @@ DeviceSegments SegmentMap::place(SegmentTable& table) const {
 void SegmentMap::apply(const PackedRows& from, const PackedRows& to, std::size_t packs,
                        const DeviceSegments& segments) {
   checked("cannot map segments", [&] {
-    set_arguments(kernel_, from.values, static_cast<cl_uint>(from.stride), to.values, static_cast<cl_uint>(to.stride),
-                  segments.segments, segments.table);
-    device_.implementation().queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(packs / 3, segments.count),
-                                                        cl::NDRange(1, 1));
+    auto& queue = device_.implementation().queue;
+    const std::size_t triples = packs / 3;
+    const auto launch = [&](cl::Kernel& kernel, std::size_t items) {
+      set_arguments(kernel, from.values, static_cast<cl_uint>(from.stride), to.values, static_cast<cl_uint>(to.stride),
+                    segments.segments, segments.table);
+      if (items == 0) return;
+      queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items, segments.count), cl::NDRange(1, 1));
+    };
+    launch(triples_, triples);
+    singles_.setArg(6, static_cast<cl_uint>(3 * triples));
+    launch(singles_, packs - 3 * triples);
   });
 }
 

@@ -25,6 +25,7 @@ struct MapSegment {
 /// Segments and their tables on the host: to[target + y] = sum over x of from[source + x step] table(x, y).
 class SegmentTable {
  public:
+  static constexpr std::size_t kTile = 8;  ///< of map_segments.cl
   /// Columns of a table in memory.
   [[nodiscard]] static std::size_t padded(std::size_t columns);
 
@@ -63,13 +64,12 @@ class SegmentMap {
   /// \param table stays as it is until the device has finished
   [[nodiscard]] DeviceSegments place(SegmentTable& table) const;
 
-  /// Writes the targets of all segments in the first `packs` packs, a multiple of three. Returns before the device has
-  /// finished.
+  /// Writes the targets of all segments in the first `packs` packs. Returns before the device has finished.
   void apply(const PackedRows& from, const PackedRows& to, std::size_t packs, const DeviceSegments& segments);
 
  private:
   Device device_;
-  cl::Kernel kernel_;
+  cl::Kernel triples_, singles_;
 };
 
 }  // namespace lobe

@@ -456,9 +456,6 @@ Accuracy test_segments(const Device& device) {
 Accuracy test_segment_map(const Device& device) {
   constexpr std::size_t kColumns = 9;  // of the target: more than a tile
   const TestRows rows(device);
-  PackedRows target{make_workspace(device, rows.packed.rows() * kColumns * sizeof(double)), kColumns, 3,
-                    rows.packed.width};
-  clear(device, target.values, target.rows() * kColumns);
   SegmentTable table;
   const std::size_t segment = table.add(1, 2, 2, 0, kColumns);  // columns 1 and 3
   Numbers numbers;
@@ -469,16 +466,21 @@ Accuracy test_segment_map(const Device& device) {
   }
   const std::vector<double> weights(entries, entries + 2 * padded);
   SegmentMap map(device);
-  map.apply(rows.packed, target, 3, map.place(table));
-  std::vector<double> found(target.rows() * kColumns);
-  device.implementation().queue.enqueueReadBuffer(target.values, CL_TRUE, 0, found.size() * sizeof(double),
-                                                  found.data());
   Comparison comparison(kDouble);
-  for (std::size_t row = 0; row < target.rows(); ++row) {
-    for (std::size_t y = 0; y < kColumns; ++y) {
-      const auto at = static_cast<Eigen::Index>(row);
-      const double expected = rows.values(at, 1) * weights[y] + rows.values(at, 3) * weights[padded + y];
-      comparison.add(found[(row / target.width * kColumns + y) * target.width + row % target.width], expected);
+  for (const std::size_t packs : {3U, 2U}) {  // three at a time, and one by one
+    PackedRows target{make_workspace(device, rows.packed.rows() * kColumns * sizeof(double)), kColumns, 3,
+                      rows.packed.width};
+    clear(device, target.values, target.rows() * kColumns);
+    map.apply(rows.packed, target, packs, map.place(table));
+    std::vector<double> found(target.rows() * kColumns);
+    device.implementation().queue.enqueueReadBuffer(target.values, CL_TRUE, 0, found.size() * sizeof(double),
+                                                    found.data());
+    for (std::size_t row = 0; row < packs * target.width; ++row) {
+      for (std::size_t y = 0; y < kColumns; ++y) {
+        const auto at = static_cast<Eigen::Index>(row);
+        const double expected = rows.values(at, 1) * weights[y] + rows.values(at, 3) * weights[padded + y];
+        comparison.add(found[(row / target.width * kColumns + y) * target.width + row % target.width], expected);
+      }
     }
   }
   return comparison.result();

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <functional>
-#include <set>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "core/stopwatch.hpp"
 #include "device/sum_segments.hpp"
+#include "model/rule_groups.hpp"
 
 namespace lobe {
 namespace {
@@ -22,130 +21,50 @@ std::vector<IncidentNode> elevations_of(std::span<const IncidentNode> incident) 
   return elevations;
 }
 
-bool are_same(std::span<const Kink> a, std::span<const Kink> b) {
-  return std::ranges::equal(a, b, [](const Kink& x, const Kink& y) { return !(x < y) && !(y < x); });
-}
-
-/// Whether limits of two batches are the same. Divisors of pumped lobes cannot be compared.
-bool have_same_limits(const LobeSet& lobes, std::size_t a, std::size_t b) {
-  if (a == b) return true;
-  const LobeSet::Limits& one = lobes.batch_limits[a];
-  const LobeSet::Limits& other = lobes.batch_limits[b];
-  return one.pieces.empty() && other.pieces.empty() && one.patch_radii == other.patch_radii &&
-         one.retro_patch_radii == other.retro_patch_radii && are_same(one.kinks, other.kinks);
-}
-
-/// By batch, whether a material mixes its lobes with some of other limits, directly or by way of others.
-std::vector<bool> mixed_batches(const LobeSet& lobes) {
-  std::vector<std::size_t> batch_of;  // by lobe
-  for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
-    batch_of.resize(batch_of.size() + lobes.batches[b].coefficients.size(), b);
-  }
-  std::vector<bool> is_mixed(lobes.batches.size(), false);
-  for (bool has_changed = true; std::exchange(has_changed, false);) {
-    for (const auto& mix : lobes.mix) {
-      for (Eigen::Index material = 0; material < mix.outerSize(); ++material) {
-        std::set<std::size_t> batches;
-        for (std::remove_cvref_t<decltype(mix)>::InnerIterator term(mix, material); term; ++term) {
-          const auto lobe = static_cast<std::size_t>(term.col());
-          if (lobe < batch_of.size()) batches.insert(batch_of[lobe]);
-        }
-        const bool mixes = std::ranges::any_of(
-            batches, [&](std::size_t b) { return is_mixed[b] || !have_same_limits(lobes, b, *batches.begin()); });
-        if (!mixes) continue;
-        for (const std::size_t b : batches) {
-          has_changed = has_changed || !is_mixed[b];
-          is_mixed[b] = true;
-        }
-      }
-    }
-  }
-  return is_mixed;
-}
-
-/// Isotropic batches whose lobes take one rule, by SharedRule::by_limits. The last group takes what would be too many:
-/// each makes nodes of its own on the host.
-std::vector<std::vector<std::size_t>> groups_by_limits(const LobeSet& lobes) {
-  constexpr std::size_t kMostGroups = 32;
-  std::vector<std::vector<std::size_t>> groups;
-  // Where panels of the given direction do not end on all kinks, what levels of the other one miss covers for it.
-  std::set<Kink> kinks;
-  for (const auto& limits : lobes.batch_limits) kinks.insert(limits.kinks.begin(), limits.kinks.end());
-  const bool has_all_kinks = kinks.size() <= lobes.kinks.size();
-  const std::vector<bool> is_mixed =
-      has_all_kinks ? mixed_batches(lobes) : std::vector<bool>(lobes.batches.size(), true);
-  for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
-    if (lobes.batches[b].kernel.is_anisotropic) continue;
-    const auto group = std::ranges::find_if(groups, [&](const auto& one) {
-      return is_mixed[b] ? is_mixed[one.front()] : !is_mixed[one.front()] && have_same_limits(lobes, one.front(), b);
-    });
-    if (group == groups.end()) {
-      groups.push_back({b});
-    } else {
-      group->push_back(b);
-    }
-  }
-  for (; groups.size() > kMostGroups; groups.pop_back()) {
-    groups[kMostGroups - 1].insert(groups[kMostGroups - 1].end(), groups.back().begin(), groups.back().end());
-  }
-  return groups;
-}
-
-/// Columns of the lobes of batches.
-std::vector<Eigen::Index> columns_of(const LobeSet& lobes, std::span<const std::size_t> batches) {
-  std::vector<Eigen::Index> columns;
-  Eigen::Index column = 0;
-  for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
-    const bool is_wanted = std::ranges::find(batches, b) != batches.end();
-    for (std::size_t k = 0; k < lobes.batches[b].coefficients.size(); ++k, ++column) {
-      if (is_wanted) columns.push_back(column);
-    }
-  }
-  return columns;
-}
-
 }  // namespace
 
 LobeExtent extent_for(const LobeSet& lobes, Given given) {
   return lobes.both_orders && given == Given::viewer ? exchanged(lobes.extent()) : lobes.extent();
 }
 
+LobeExtent extent_of_group(const LobeSet& lobes, std::size_t group, Given given) {
+  LobeExtent extent = lobes.extent_of_group(group);
+  return lobes.both_orders && given == Given::viewer ? exchanged(std::move(extent)) : extent;
+}
+
 AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given,
                                    double tolerance, SharedRule shared)
     : rule_(extent_for(lobes, given), tolerance),
-      half_vectors_(extent_for(lobes, given)),
       deltas_(device, lobes.deltas),
       given_(given),
       smooth_lobes_(static_cast<Eigen::Index>(lobes.smooth_lobes())),
       lobes_(static_cast<Eigen::Index>(lobes.lobes())) {
-  const auto add = [&](Rays rays, std::span<const std::size_t> chosen, AlbedoRule rule) {
+  const auto add = [&](std::span<const std::size_t> chosen, LobeExtent extent) {
+    if (chosen.empty()) return;
     std::vector<LobeBatch> batches;
     for (const std::size_t b : chosen) batches.push_back(lobes.batches[b]);
     std::vector<Eigen::Index> columns = columns_of(lobes, chosen);
     LobeEvaluator evaluator(device, batches, precision, LobeEvaluator::suggested_capacity(columns.size()));
-    NodeBlock block(evaluator.node_stride(), rays != Rays::none);
-    parts_.push_back({rays, std::move(rule), std::move(columns), std::move(evaluator), std::move(block)});
+    NodeBlock block(evaluator.node_stride(), evaluator.needs_tangents());
+    parts_.push_back({rays_of(lobes, chosen.front()), AlbedoRule(extent, tolerance), HalfVectorRule(extent),
+                      std::move(columns), std::move(evaluator), std::move(block)});
   };
   if (shared == SharedRule::by_limits) {
-    for (const auto& group : groups_by_limits(lobes)) {
-      const LobeExtent extent = lobes.extent_of(group);
-      const bool is_exchanged = lobes.both_orders && given == Given::viewer;
-      add(Rays::none, group, AlbedoRule(is_exchanged ? exchanged(extent) : extent, tolerance));
-    }
-  } else {
+    for (const RuleGroup& group : rule_groups(lobes)) add(group.batches, extent_of_group(lobes, group.number, given));
+    return;
+  }
+  for (const Rays rays : {Rays::none, Rays::mirror, Rays::retro}) {
     std::vector<std::size_t> batches;
     for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
-      if (!lobes.batches[b].kernel.is_anisotropic) batches.push_back(b);
+      if (rays_of(lobes, b) == rays) batches.push_back(b);
     }
-    if (!batches.empty()) add(Rays::none, batches, rule_);
+    add(batches, extent_for(lobes, given));
   }
-  for (const bool is_retro : {false, true}) {
-    std::vector<std::size_t> batches;
-    for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
-      if (lobes.batches[b].kernel.is_anisotropic && lobes.is_retro_patch[b] == is_retro) batches.push_back(b);
-    }
-    if (!batches.empty()) add(is_retro ? Rays::retro : Rays::mirror, batches, rule_);
-  }
+}
+
+AlbedoIntegrator::Rays AlbedoIntegrator::rays_of(const LobeSet& lobes, std::size_t batch) {
+  if (!lobes.batches[batch].kernel.is_anisotropic) return Rays::none;
+  return lobes.is_retro_patch[batch] ? Rays::retro : Rays::mirror;
 }
 
 Eigen::MatrixXd AlbedoIntegrator::integrate(std::span<const IncidentNode> incident, int level, WorkDone& work) {
@@ -176,8 +95,8 @@ void AlbedoIntegrator::place(Part& part, const IncidentNode& incident, int level
   if (part.rays == Rays::none) {
     part.rule.place(incident.elevation, level, part.block, flush);
   } else {
-    half_vectors_.place(incident.elevation, incident.azimuth, part.rays == Rays::retro, rule_.nodes_per_panel(level),
-                        part.block, flush);
+    part.half_vectors.place(incident.elevation, incident.azimuth, part.rays == Rays::retro,
+                            rule_.nodes_per_panel(level), part.block, flush);
   }
 }
 

@@ -20,14 +20,13 @@ enum class Given { light, viewer };
 
 /// The extent of lobes for integrals over the other direction.
 [[nodiscard]] LobeExtent extent_for(const LobeSet& lobes, Given given);
+/// That of the lobes of one group.
+[[nodiscard]] LobeExtent extent_of_group(const LobeSet& lobes, std::size_t group, Given given);
 
-/// Which isotropic lobes take one rule over the other direction.
+/// Which lobes take one rule over the other direction.
 enum class SharedRule {
-  all,
-  /// Those that are not smooth in the same places, as panels that end on the kinks of others are of no use to them; and
-  /// all that materials mix with lobes of other kinks, as errors of two rules are independent and may cancel by
-  /// accident in a mixture.
-  by_limits
+  all,       ///< of isotropic ones, and of anisotropic ones about the same direction
+  by_limits  ///< those of one group (LobeSet::group_of_batch)
 };
 
 /// Albedos of many lobes, delta parts included, at many directions of incidence, on the device.
@@ -47,23 +46,23 @@ class AlbedoIntegrator {
  private:
   enum class Rays { none, mirror, retro };
 
-  /// Isotropic lobes that share a rule, or anisotropic ones that want rays from the same direction, sampled and
-  /// integrated together.
+  /// Lobes that share a rule over the other direction, sampled and integrated together.
   struct Part {
     Rays rays;
-    AlbedoRule rule;                  ///< over the other direction, for isotropic lobes
+    AlbedoRule rule;                  ///< of isotropic lobes
+    HalfVectorRule half_vectors;      ///< of anisotropic ones
     std::vector<Eigen::Index> lobes;  ///< columns of the lobe set
     LobeEvaluator evaluator;
     NodeBlock block;
   };
 
+  [[nodiscard]] static Rays rays_of(const LobeSet& lobes, std::size_t batch);
   /// Part's lobes x incident nodes.
   [[nodiscard]] Eigen::MatrixXd integrate(Part& part, std::span<const IncidentNode> incident, int level,
                                           WorkDone& work);
   void place(Part& part, const IncidentNode& incident, int level, const std::function<void()>& flush) const;
 
   AlbedoRule rule_;
-  HalfVectorRule half_vectors_;
   std::vector<Part> parts_;
   DeltaShares deltas_;
   Given given_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/clones.hpp"
 #include "hemisphere/geometry.hpp"
 #include "hemisphere/node_place.hpp"
 
@@ -16,17 +17,10 @@ __attribute__((simd("notinbranch"), const)) double sin(double) noexcept;  // no 
 __attribute__((simd("notinbranch"), const)) double log1p(double) noexcept;
 }
 #define LOBE_VECTORS _Pragma("omp simd")
-// The clone is chosen while the library is loaded, before sanitizers are ready.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define LOBE_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
-#endif
 #endif
 #endif
 #ifndef LOBE_VECTORS
 #define LOBE_VECTORS
-#endif
-#ifndef LOBE_CLONES
-#define LOBE_CLONES
 #endif
 // What clones share has to be compiled as each of them is.
 #if defined(__GNUC__)

@@ -83,14 +83,13 @@ PatchNodes PatchRule::place(double elevation, int count, int degree, int known) 
     placed.panels.push_back({elevations[panel], elevations[panel + 1], rings.size(), &rule.weights, &rule.fine});
     for (const double at : rule.nodes.nodes) {
       const PanelPoint out = panel_point(elevations[panel], elevations[panel + 1], at);
-      rings.push_back({out.at, {}, {}});
+      rings.push_back({out.at, elevation_pair(elevation, out.at), {}, {}});
       // Both halves of the azimuth; N.X sin(theta_X).
       factors.push_back(2 * out.stretch * std::sin(out.at) * std::cos(out.at));
     }
   }
   parallel_for(rings.size(), [&](std::size_t ring) {
-    auto& [at, nodes, panels] = rings[ring];
-    const ElevationPair pair = elevation_pair(elevation, at);
+    auto& [at, pair, nodes, panels] = rings[ring];
     const auto azimuths = azimuth_panels(elevation, at, extent_);
     // Near the normal polynomials have few orders; functions that are not interpolated may have more.
     const double orders = known == kAllKnown ? degree : std::min(orders_at(degree, std::cos(at)), degree);
@@ -99,7 +98,7 @@ PatchNodes PatchRule::place(double elevation, int count, int degree, int known) 
       panels.push_back({azimuths[side], azimuths[side + 1], nodes.size(), &around.weights, &around.fine});
       for (const double share : around.nodes.nodes) {
         const PanelPoint psi = panel_point(azimuths[side], azimuths[side + 1], share);
-        nodes.push_back({node_of_azimuth(pair, psi.at, factors[ring] * psi.stretch), psi.at});
+        nodes.push_back({psi.at, factors[ring] * psi.stretch});
       }
     }
   });
@@ -113,7 +112,7 @@ std::vector<PatchRing> PatchRule::gauss_rings(double elevation, int count, int d
       PatchRing& ring = placed.rings[across.first + k];
       for (const ProductPanel& around : ring.panels) {
         for (std::size_t j = 0; j < around.fine->nodes.size(); ++j) {
-          ring.nodes[around.first + j].node[NodeBlock::factor] *= across.fine->weights[k] * around.fine->weights[j];
+          ring.nodes[around.first + j].factor *= across.fine->weights[k] * around.fine->weights[j];
         }
       }
     }

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "device/node_block.hpp"
 #include "hemisphere/albedo_rule.hpp"
+#include "hemisphere/geometry.hpp"
 #include "hemisphere/mirror_panels.hpp"
 
 namespace lobe {
@@ -20,17 +20,20 @@ struct ProductPanel {
   std::size_t first;               ///< number of its first node among those of all panels
   const Eigen::MatrixXd* weights;  ///< nodes x fine nodes, of a panel of length 1; good as long as the PatchRule
   const GaussRule* fine;           ///< nodes of the polynomial
+
+  /// All nodes are fine ones, and weights are diagonal.
+  [[nodiscard]] bool is_gauss() const { return weights->rows() == weights->cols(); }
 };
 
-/// A direction X for one L on a ring: its node and its azimuth psi in [0, pi] from the mirror side (radians).
+/// A direction X for one L on a ring: its azimuth psi in [0, pi] from the mirror side (radians), and its factor.
 struct PatchNode {
-  NodeBlock::Node node;
-  double psi;
+  double psi, factor;
 };
 
 /// Directions X of one elevation above the horizon (radians), by panels of psi.
 struct PatchRing {
   double elevation;
+  ElevationPair pair;  ///< with that of L
   std::vector<PatchNode> nodes;
   std::vector<ProductPanel> panels;
 };

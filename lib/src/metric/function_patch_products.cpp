@@ -66,9 +66,9 @@ struct RingTables {
   RingTables(const PatchRing& ring, int orders)
       : cosines(orders, as_index(ring.nodes.size())), sines(orders, as_index(ring.nodes.size())) {
     for (std::size_t j = 0; j < ring.nodes.size(); ++j) {
-      const auto& [node, psi] = ring.nodes[j];
+      const auto& [psi, factor] = ring.nodes[j];
       const double slope = 2 * std::cos(psi);
-      double cosine = node[NodeBlock::factor];
+      double cosine = factor;
       double sine = 0;
       double cosine_before = cosine * slope / 2;
       double sine_before = -cosine * std::sin(psi);

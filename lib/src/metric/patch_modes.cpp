@@ -20,6 +20,8 @@
 #include "hemisphere/patch_operator.hpp"
 #include "hemisphere/patch_response.hpp"
 #include "hemisphere/refinement.hpp"
+#include "hemisphere/row_tables.hpp"
+#include "model/rule_groups.hpp"
 
 namespace lobe {
 namespace {
@@ -54,42 +56,27 @@ Eigen::MatrixXd square_root(const Eigen::MatrixXd& w, double rounding) {
   return solver.eigenvectors().rightCols(rank) * sizes.asDiagonal();
 }
 
-/// cos(m psi) for m = 0 .. stride - 1.
-/// \param stride a multiple of eight
-void write_cosines(double psi, std::size_t stride, double* values) {
-  constexpr Eigen::Index kLanes = 8;
-  using Lanes = Eigen::Array<double, kLanes, 1>;
-  const double slope = 2 * std::cos(psi);
-  Lanes now;  // orders m .. m + 7
-  now(0) = 1;
-  now(1) = slope / 2;
-  for (Eigen::Index m = 2; m < kLanes; ++m) now(m) = slope * now(m - 1) - now(m - 2);
-  const double eighth = slope * now(kLanes - 1) - now(kLanes - 2);
-  Lanes before;  // orders m - 8 .. m - 1
-  before(0) = eighth;
-  before.tail<kLanes - 1>() = now.tail<kLanes - 1>().reverse();
-  for (double* const end = values + stride; values != end; values += kLanes) {
-    Eigen::Map<Lanes>{values} = now;
-    const Lanes next = 2 * eighth * now - before;
-    before = now;
-    now = next;
-  }
-}
-
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+static_assert(kTableLanes % SegmentTable::kTile == 0);
 
 /// The map from the nodes of a ring to orders: integrals of l_j cos(m psi) for their Lagrange polynomials l_j.
-/// \param stride of the table, a multiple of eight
+/// \param stride of the table
 void write_around(const PatchRing& ring, std::size_t stride, double* table) {
   RowMajorMatrix cosines;
   for (const ProductPanel& panel : ring.panels) {
     const auto& fine = panel.fine->nodes;
+    const auto psi = [&](std::size_t k) { return panel_point(panel.low, panel.high, fine[k]).at; };
+    double* const rows = table + panel.first * stride;
+    if (panel.is_gauss()) {
+      for (std::size_t k = 0; k < fine.size(); ++k) {
+        write_cosines(psi(k), (*panel.weights)(index(k), index(k)), stride, rows + k * stride);
+      }
+      continue;
+    }
     cosines.resize(index(fine.size()), index(stride));
     for (std::size_t k = 0; k < fine.size(); ++k) {
-      write_cosines(panel_point(panel.low, panel.high, fine[k]).at, stride, cosines.row(index(k)).data());
+      write_cosines(psi(k), 1, stride, cosines.row(index(k)).data());
     }
-    Eigen::Map<RowMajorMatrix>(table + panel.first * stride, panel.weights->rows(), index(stride)).noalias() =
-        *panel.weights * cosines;
+    combine_rows(*panel.weights, cosines, rows);
   }
 }
 
@@ -112,21 +99,39 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
                        std::shared_ptr<Lights> lights)
     : lobes_(lobes),
       lighting_(lighting),
+      device_(device),
       rule_(extent_for(lobes, Given::viewer), lighting.radii(), has_mirror_and_retro(lobes)),
-      evaluator_(device, lobes.batches, Precision::double_precision,
-                 std::max(kLongestRing, LobeEvaluator::suggested_capacity(lobes.lobes()))),
-      block_(evaluator_.node_stride()),
       map_(device),
       work_(work),
-      lobe_rows_(evaluator_.rows()),
+      lobe_rows_(lobes.lobes()),
       delta_shares_(device, lobes.deltas),
       lights_(std::move(lights)) {
-  const std::size_t width = evaluator_.width();
-  for (std::size_t k = 0; k < lobes.deltas.size(); ++k) lobe_rows_.push_back(evaluator_.packs() * width + k);
+  std::size_t width = 1;
+  for (const RuleGroup& chosen : rule_groups(lobes)) {
+    std::vector<LobeBatch> batches;
+    for (const std::size_t b : chosen.batches) batches.push_back(lobes.batches[b]);
+    LobeEvaluator evaluator(device, batches, Precision::double_precision,
+                            std::max(kLongestRing, LobeEvaluator::suggested_capacity(chosen.lobes.size())));
+    width = evaluator.width();
+    const auto& rows = evaluator.rows();
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      lobe_rows_[static_cast<std::size_t>(chosen.lobes[k])] = delta_pack_ * width + rows[k];
+    }
+    const std::size_t packs = rows.back() / width + 1;
+    NodeBlock block(evaluator.node_stride());
+    PackedRows orders{{}, 0, packs, width};
+    groups_.push_back({chosen.lobes,
+                       PatchRule(extent_of_group(lobes, chosen.number, Given::viewer), lighting.radii(), false),
+                       std::move(evaluator), std::move(block), delta_pack_, std::move(orders)});
+    delta_pack_ += packs;
+  }
+  for (std::size_t k = 0; k < lobes.deltas.size(); ++k) {
+    lobe_rows_[lobes.smooth_lobes() + k] = delta_pack_ * width + k;
+  }
   const std::size_t delta_packs = (lobes.deltas.size() + width - 1) / width;
-  orders_ = {{}, 0, evaluator_.packs(), width};
-  modes_ = {{}, 0, (evaluator_.packs() + delta_packs + 2) / 3 * 3, width};
+  modes_ = {{}, 0, delta_pack_ + delta_packs, width};
   rows_ = modes_;
+  rows_.packs = (rows_.packs + 2) / 3 * 3;
 }
 
 std::size_t PatchModes::degrees() {
@@ -145,6 +150,7 @@ PatchModes::Light& PatchModes::light(std::size_t degree) {
              patch_light_matrices(polynomials, light_discs(lighting_.shares(kDegrees[degree].radii))),
              DiscNodes(kDegrees[degree].degree),
              {},
+             {},
              0};
   std::vector<Eigen::MatrixXd> roots(made.matrices.size());
   const double rounding = 1e-15 * made.matrices[0].diagonal().maxCoeff();
@@ -162,6 +168,7 @@ PatchModes::Light& PatchModes::light(std::size_t degree) {
     made.columns += rank;
   }
   known = std::move(made);
+  known->placed_roots = map_.place(known->roots);
   return *known;
 }
 
@@ -171,38 +178,48 @@ void PatchModes::grow(PackedRows& rows, std::size_t columns) const {
   if (count == 0) return;
   checked("cannot prepare patch lights", [&] {
     if (rows.values() != nullptr && rows.values.getInfo<CL_MEM_SIZE>() >= count * sizeof(double)) return;
-    rows.values = make_workspace(evaluator_.device(), count * sizeof(double));
-    clear(evaluator_.device(), rows.values, count);  // the padding stays zero
+    rows.values = make_workspace(device_, count * sizeof(double));
+    clear(device_, rows.values, count);  // the padding stays zero
   });
 }
 
-void PatchModes::evaluate_orders(std::span<const PatchRing> rings, const DiscPolynomials& polynomials) {
+void PatchModes::evaluate_orders(Group& group, std::span<const PatchRing> rings, const DiscPolynomials& polynomials) {
   const auto columns = static_cast<std::size_t>(polynomials.orders());
-  grow(orders_, rings.size() * columns);
+  NodeBlock& block = group.block;
+  grow(group.orders, rings.size() * columns);
   for (std::size_t first = 0; first < rings.size();) {
-    block_.clear();
-    around_.clear();
+    SegmentTable& around = around_[around_turn_];
+    around_turn_ = 1 - around_turn_;
+    block.clear();
+    around.clear();
     std::size_t end = first;
-    while (end < rings.size() && block_.size() + rings[end].nodes.size() <= block_.capacity()) {
+    while (end < rings.size() && block.size() + rings[end].nodes.size() <= block.capacity()) {
       const int orders = orders_at(polynomials.degree(), std::cos(rings[end].elevation));
-      around_.add(block_.size(), 1, rings[end].nodes.size(), end * columns, static_cast<std::size_t>(orders));
-      for (const PatchNode& node : rings[end].nodes) block_.push(node.node);
+      around.add(block.size(), 1, rings[end].nodes.size(), end * columns, static_cast<std::size_t>(orders));
+      block.extend(rings[end].nodes.size());
       ++end;
     }
-    parallel_for(end - first, [&](std::size_t ring) {
-      write_around(rings[first + ring], around_.segments()[ring].stride, around_.table(ring));
+    parallel_for(end - first, [&](std::size_t k) {
+      const PatchRing& ring = rings[first + k];
+      const MapSegment& segment = around.segments()[k];
+      for (std::size_t j = 0; j < ring.nodes.size(); ++j) {
+        place_node(block, segment.source + j, ring.pair, ring.nodes[j].psi, ring.nodes[j].factor);
+      }
+      complete_nodes(block, segment.source, ring.nodes.size());
+      write_around(ring, segment.stride, around.table(k));
     });
-    if (lobes_.both_orders) block_.exchange_directions();
-    evaluator_.evaluate(block_);
-    map_.apply(evaluator_.values(), orders_, orders_.packs, map_.place(around_));
-    finish(evaluator_.device());
-    work_.nodes += block_.size();
-    work_.evaluations += block_.size() * lobes_.smooth_lobes();
+    if (lobes_.both_orders) block.exchange_directions();
+    work_.seconds_nodes += watch_.lap();
+    group.evaluator.evaluate(block);  // waits until the device has done what it was given before
+    map_.apply(group.evaluator.values(), group.orders, group.orders.packs, map_.place(around));
+    work_.seconds_values += watch_.lap();
+    work_.nodes += block.size();
+    work_.evaluations += block.size() * group.lobes.size();
     first = end;
   }
 }
 
-void PatchModes::write_along(const PatchNodes& placed, double weight, const Light& lit) {
+void PatchModes::write_along(const Group& group, const PatchNodes& placed, double weight, const Light& lit) {
   const auto& polynomials = lit.polynomials;
   const auto& rings = placed.rings;
   const auto count = static_cast<std::size_t>(lit.nodes.radii().size());
@@ -216,7 +233,7 @@ void PatchModes::write_along(const PatchNodes& placed, double weight, const Ligh
     const auto in = static_cast<std::size_t>(
         std::ranges::partition_point(orders, [&](int of_ring) { return of_ring > m; }) - orders.begin());
     const auto step = static_cast<std::size_t>(polynomials.orders());
-    const auto target = static_cast<std::size_t>(lit.nodes.first(m));
+    const std::size_t target = group.first_pack * modes_.stride + static_cast<std::size_t>(lit.nodes.first(m));
     const auto columns = static_cast<std::size_t>(lit.nodes.count(m));
     if (m < 2) {
       along_.add(static_cast<std::size_t>(m), step, rings.size(), target, count);
@@ -225,16 +242,23 @@ void PatchModes::write_along(const PatchNodes& placed, double weight, const Ligh
     }
   }
   parallel_for(2, [&](std::size_t parity) {
-    Eigen::MatrixXd table(index(rings.size()), index(count));
+    const std::size_t stride = along_.segments()[parity].stride;
+    double* const table = along_.table(parity);
+    RowMajorMatrix at_fine;
     for (const ProductPanel& panel : placed.panels) {
       Eigen::ArrayXd radii(index(panel.fine->nodes.size()));
       for (Eigen::Index k = 0; k < radii.size(); ++k) {
         radii(k) = std::cos(panel_point(panel.low, panel.high, panel.fine->nodes[static_cast<std::size_t>(k)]).at);
       }
-      table.middleRows(index(panel.first), panel.weights->rows()).noalias() =
-          std::sqrt(weight) * *panel.weights * lit.nodes.interpolation(radii, parity == 1);
+      at_fine.setZero(radii.size(), index(stride));
+      at_fine.leftCols(index(count)) = std::sqrt(weight) * lit.nodes.interpolation(radii, parity == 1);
+      if (panel.is_gauss()) {
+        Eigen::Map<RowMajorMatrix>(table + panel.first * stride, radii.size(), index(stride)) =
+            panel.weights->diagonal().asDiagonal() * at_fine;
+      } else {
+        combine_rows(*panel.weights, at_fine, table + panel.first * stride);
+      }
     }
-    write_table(along_, parity, table);
   });
 }
 
@@ -265,15 +289,15 @@ void PatchModes::write_deltas(const IncidentNode& incident, const Eigen::VectorX
     }
   }
   checked("cannot place delta parts", [&] {
-    evaluator_.device().implementation().queue.enqueueWriteBuffer(modes_.values, CL_TRUE,
-                                                                  evaluator_.packs() * columns * width * sizeof(double),
-                                                                  values.size() * sizeof(double), values.data());
+    device_.implementation().queue.enqueueWriteBuffer(modes_.values, CL_TRUE,
+                                                      delta_pack_ * columns * width * sizeof(double),
+                                                      values.size() * sizeof(double), values.data());
   });
 }
 
 template <typename Use>
 void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
-  const FinishOnFailure finish_tables(evaluator_.device());
+  const FinishOnFailure finish_tables(device_);
   watch_.lap();
   Light& lit = light(level.degree);
   const auto& polynomials = lit.polynomials;
@@ -283,24 +307,25 @@ void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
   const Eigen::MatrixXd shares = delta_shares(nodes);
   for (std::size_t at = 0; at < nodes.size(); ++at) {
     const IncidentNode& incident = nodes[at];
-    const auto placed = rule_.place(incident.elevation, kNodes[level.rule], polynomials.degree());
-    work_.seconds_nodes += watch_.lap();
-    evaluate_orders(placed.rings, polynomials);
-    write_along(placed, incident.weight, lit);
-    map_.apply(orders_, modes_, orders_.packs, map_.place(along_));
+    for (Group& group : groups_) {
+      const auto placed = group.rule.place(incident.elevation, kNodes[level.rule], polynomials.degree());
+      evaluate_orders(group, placed.rings, polynomials);
+      write_along(group, placed, incident.weight, lit);
+      map_.apply(group.orders, modes_, group.orders.packs, map_.place(along_));
+      work_.seconds_nodes += watch_.lap();
+    }
     write_deltas(incident, shares.col(index(at)), lit);
-    map_.apply(modes_, rows_, modes_.packs, map_.place(lit.roots));
-    finish(evaluator_.device());
-    work_.seconds_values += watch_.lap();
+    map_.apply(modes_, rows_, modes_.packs, *lit.placed_roots);
     use();
-    finish(evaluator_.device());
-    work_.seconds_gram += watch_.lap();
+    work_.seconds_values += watch_.lap();
   }
+  finish(device_);
+  work_.seconds_gram += watch_.lap();
 }
 
 Eigen::MatrixXd PatchModes::products(std::size_t slab, ModeLevel level) {
   grow(rows_, light(level.degree).columns);
-  GramAccumulator gram(evaluator_.device(), rows_, 0, rows_.rows());
+  GramAccumulator gram(device_, rows_, 0, rows_.rows());
   visit(slab, level, [&] { gram.add(rows_.stride); });
   const auto sums = gram.take();
   const auto n = index(lobes_.lobes());
@@ -327,7 +352,7 @@ Eigen::VectorXd PatchModes::squares(std::size_t slab, ModeLevel level,
     }
   }
   grow(rows_, light(level.degree).columns);
-  DifferenceAccumulator accumulator(evaluator_.device(), rows_, terms);
+  DifferenceAccumulator accumulator(device_, rows_, terms);
   visit(slab, level, [&] { accumulator.add(rows_.stride); });
   const auto sums = accumulator.take();
   Eigen::VectorXd squares = Eigen::Map<const Eigen::VectorXd>(sums.data(), index(sums.size()));
@@ -345,7 +370,7 @@ Eigen::MatrixXd PatchModes::missing_from_deltas(std::size_t slab, ModeLevel leve
   const auto& deltas = lobes_.deltas;
   const auto n = index(deltas.size());
   Eigen::MatrixXd missing = Eigen::MatrixXd::Zero(n, n);
-  PatchLight opposite(evaluator_.device(), discs);
+  PatchLight opposite(device_, discs);
   const auto nodes = rule_.incident_nodes(slab, static_cast<int>(level.rule));
   const Eigen::MatrixXd shares = delta_shares(nodes);
   for (std::size_t at_node = 0; at_node < nodes.size(); ++at_node) {

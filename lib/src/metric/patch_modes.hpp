@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -39,7 +40,7 @@ class PatchModes {
   /// Some of the lobes at the same nodes.
   /// \param lobes of the same extent
   [[nodiscard]] PatchModes of(const LobeSet& lobes) const {
-    return PatchModes(evaluator_.device(), lobes, lighting_, work_, lights_);
+    return PatchModes(device_, lobes, lighting_, work_, lights_);
   }
 
   [[nodiscard]] std::size_t slabs() const { return rule_.slabs(); }
@@ -61,7 +62,8 @@ class PatchModes {
     DiscPolynomials polynomials;
     std::vector<Eigen::MatrixXd> matrices;
     DiscNodes nodes;
-    SegmentTable roots;   ///< from nodes to rows: S times the polynomials at the nodes
+    SegmentTable roots;  ///< from nodes to rows: S times the polynomials at the nodes
+    std::optional<DeviceSegments> placed_roots;
     std::size_t columns;  ///< of S
   };
   using Lights = std::vector<std::optional<Light>>;
@@ -74,9 +76,19 @@ class PatchModes {
   /// \param use called when they are there
   template <typename Use>
   void visit(std::size_t slab, ModeLevel level, const Use& use);
-  void evaluate_orders(std::span<const PatchRing> rings, const DiscPolynomials& polynomials);
+  /// Lobes that take one rule over X, sampled together.
+  struct Group {
+    std::vector<Eigen::Index> lobes;  ///< columns of the lobe set
+    PatchRule rule;
+    LobeEvaluator evaluator;
+    NodeBlock block;
+    std::size_t first_pack;  ///< in modes_
+    PackedRows orders;       ///< integrals of f(L, X) cos(m psi) over psi: column ring * orders + m
+  };
+
+  void evaluate_orders(Group& group, std::span<const PatchRing> rings, const DiscPolynomials& polynomials);
   /// The table that takes orders to nodes.
-  void write_along(const PatchNodes& placed, double weight, const Light& lit);
+  void write_along(const Group& group, const PatchNodes& placed, double weight, const Light& lit);
   /// \param shares that the delta parts reflect from there
   void write_deltas(const IncidentNode& incident, const Eigen::VectorXd& shares, const Light& lit);
   /// That, deltas x nodes.
@@ -87,18 +99,20 @@ class PatchModes {
 
   const LobeSet& lobes_;
   const Lighting& lighting_;
-  PatchRule rule_;
-  LobeEvaluator evaluator_;
-  NodeBlock block_;
+  Device device_;
+  PatchRule rule_;  ///< over L
+  std::vector<Group> groups_;
   SegmentMap map_;
   WorkDone& work_;
   Stopwatch watch_;
-  std::vector<std::size_t> lobe_rows_;  ///< packed row of each lobe; those of delta parts come behind the evaluator's
-  PackedRows orders_;                   ///< integrals of f(L, X) cos(m psi) over psi: column ring * orders + m
+  std::vector<std::size_t> lobe_rows_;  ///< packed row of each lobe; those of delta parts come last
+  std::size_t delta_pack_ = 0;          ///< the first of delta parts
   PackedRows modes_;                    ///< f_m at the nodes, times sqrt(weight of L)
   PackedRows rows_;                     ///< f S sqrt(weight of L)
-  SegmentTable around_;                 ///< from nodes to orders
-  SegmentTable along_;                  ///< from orders to nodes
+  /// From nodes to orders: the host writes one while the device reads the other.
+  std::array<SegmentTable, 2> around_;
+  std::size_t around_turn_ = 0;
+  SegmentTable along_;  ///< from orders to nodes
   DeltaShares delta_shares_;
   std::shared_ptr<Lights> lights_;  ///< by degree
 };

@@ -74,10 +74,10 @@ LobeSet select(const LobeSet& lobes, std::span<const Eigen::Index> wanted) {
     if (!some.batches[b].coefficients.empty()) kept.push_back(b);
   }
   some.is_retro_patch.clear();
-  some.batch_limits.clear();
+  some.group_of_batch.clear();
   for (const std::size_t b : kept) {
     some.is_retro_patch.push_back(lobes.is_retro_patch[b]);
-    some.batch_limits.push_back(lobes.batch_limits[b]);
+    some.group_of_batch.push_back(lobes.group_of_batch[b]);
   }
   std::erase_if(some.batches, [](const LobeBatch& batch) { return batch.coefficients.empty(); });
   return some;

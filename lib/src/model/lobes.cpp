@@ -20,6 +20,7 @@
 #include "model/formula.hpp"
 #include "model/formula_kinks.hpp"
 #include "model/formula_tree.hpp"
+#include "model/rule_groups.hpp"
 #include "model/terms.hpp"
 #include "model/traits.hpp"
 
@@ -297,29 +298,33 @@ std::vector<Kink> least_smooth(const std::set<Kink>& all) {
 class CollectedLimits {
  public:
   void add(const Lobe& lobe) {
-    narrowest_ = std::min(narrowest_, lobe.width);
-    narrowest_retro_ = std::min(narrowest_retro_, lobe.retro_width);
+    limits_.narrowest = std::min(limits_.narrowest, lobe.width);
+    limits_.narrowest_retro = std::min(limits_.narrowest_retro, lobe.retro_width);
+    limits_.aspect = std::max(limits_.aspect, lobe.aspect);
     radii_.insert(lobe.patch_radii.begin(), lobe.patch_radii.end());
     if (lobe.retro_patch_radius) retro_radii_.insert(*lobe.retro_patch_radius);
+    if (lobe.patch_edge) edges_.insert(*lobe.patch_edge);
+    if (lobe.retro_patch_edge) retro_edges_.insert(*lobe.retro_patch_edge);
     kinks_.insert(lobe.kinks.begin(), lobe.kinks.end());
     if (!lobe.curves.empty()) curves_.insert(lobe.curves);
   }
   [[nodiscard]] LobeSet::Limits limits(const std::map<std::vector<double>, Pumping>& pumpings) const {
-    LobeSet::Limits result{.narrowest = narrowest_,
-                           .narrowest_retro = narrowest_retro_,
-                           .patch_radii = {radii_.begin(), radii_.end()},
-                           .retro_patch_radii = {retro_radii_.begin(), retro_radii_.end()},
-                           .kinks = {kinks_.begin(), kinks_.end()},
-                           .pieces = {}};
+    LobeSet::Limits result = limits_;
+    result.patch_radii.assign(radii_.begin(), radii_.end());
+    result.retro_patch_radii.assign(retro_radii_.begin(), retro_radii_.end());
+    result.patch_edges.assign(edges_.begin(), edges_.end());
+    result.retro_patch_edges.assign(retro_edges_.begin(), retro_edges_.end());
+    result.kinks.assign(kinks_.begin(), kinks_.end());
     for (const auto& curves : curves_) result.pieces.push_back(divisor_pieces(pumpings.at(curves)));
     return result;
   }
 
  private:
-  double narrowest_ = 1;
-  double narrowest_retro_ = 1;
+  LobeSet::Limits limits_;  ///< but for what is listed once
   std::set<double> radii_;
   std::set<double> retro_radii_;
+  std::set<PatchEdge> edges_;
+  std::set<PatchEdge> retro_edges_;
   std::set<Kink> kinks_;
   std::set<std::vector<double>> curves_;
 };
@@ -348,26 +353,18 @@ std::vector<bool> hiding_materials(std::span<const Material> materials, const Co
 
 }  // namespace
 
-LobeExtent LobeSet::extent_of(std::span<const std::size_t> of_batches) const {
+LobeExtent LobeSet::extent_of_group(std::size_t group) const {
+  const Limits& limits = group_limits[group];
   LobeExtent part = extent();
-  part.width = 1;
-  part.retro_width = 1;
-  part.pieces.clear();
-  std::set<double> radii;
-  std::set<double> retro_radii;
-  std::set<Kink> all_kinks;
-  for (const std::size_t b : of_batches) {
-    const Limits& limits = batch_limits[b];
-    part.width = std::min(part.width, limits.narrowest);
-    part.retro_width = std::min(part.retro_width, limits.narrowest_retro);
-    radii.insert(limits.patch_radii.begin(), limits.patch_radii.end());
-    retro_radii.insert(limits.retro_patch_radii.begin(), limits.retro_patch_radii.end());
-    all_kinks.insert(limits.kinks.begin(), limits.kinks.end());
-    part.pieces.insert(part.pieces.end(), limits.pieces.begin(), limits.pieces.end());
-  }
-  part.patch_radii.assign(radii.begin(), radii.end());
-  part.retro_patch_radii.assign(retro_radii.begin(), retro_radii.end());
-  part.kinks = least_smooth(all_kinks);
+  part.width = limits.narrowest;
+  part.retro_width = limits.narrowest_retro;
+  part.aspect = limits.aspect;
+  part.patch_radii = limits.patch_radii;
+  part.retro_patch_radii = limits.retro_patch_radii;
+  part.patch_edges = limits.patch_edges;
+  part.retro_patch_edges = limits.retro_patch_edges;
+  part.pieces = limits.pieces;
+  part.kinks = least_smooth({limits.kinks.begin(), limits.kinks.end()});
   return part;
 }
 
@@ -427,7 +424,6 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   // Mirror images have the same products.
   set.both_sides = set.both_sides && !planes.are_shared();
   set.mirror_plane = planes.shared();
-  for (const CollectedLimits& limits : batch_limits) set.batch_limits.push_back(limits.limits(found.pumpings));
   for (const auto& [curves, pumping] : found.pumpings) {
     set.pieces.push_back(divisor_pieces(pumping));
     if (set.piece_kinks.size() >= kMostKinks) continue;
@@ -484,6 +480,9 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     mix.setFromTriplets(list.begin(), list.end());
     set.mix.push_back(std::move(mix));
   }
+  std::vector<LobeSet::Limits> limits_of_batches;
+  for (const CollectedLimits& limits : batch_limits) limits_of_batches.push_back(limits.limits(found.pumpings));
+  group_by_limits(limits_of_batches, set);
   return set;
 }
 

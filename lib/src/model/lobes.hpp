@@ -65,16 +65,22 @@ struct LobeSet {
   /// Cosine of the largest polar angle of both directions that integrals reach to; 0: to the horizon.
   double cos_min = 0;
 
-  /// Widths and kinks of a batch's lobes, which a rule for these alone takes instead of those of all.
+  /// What tells rules where lobes are narrow and where they are not smooth.
   struct Limits {
     double narrowest = 1;
     double narrowest_retro = 1;
+    double aspect = 0;
     std::vector<double> patch_radii;
     std::vector<double> retro_patch_radii;
+    std::vector<PatchEdge> patch_edges;
+    std::vector<PatchEdge> retro_patch_edges;
     std::vector<Kink> kinks;
     std::vector<std::function<unsigned(double cos_i, double cos_o)>> pieces;
   };
-  std::vector<Limits> batch_limits;  ///< by batch
+  /// By batch the group that it is in: those of one group take one rule over one direction, at the other one given.
+  /// They are not smooth in the same places, or are parts of one material (model/rule_groups.hpp).
+  std::vector<std::size_t> group_of_batch;
+  std::vector<Limits> group_limits;  ///< by group
 
   [[nodiscard]] std::size_t lobes() const { return names.size(); }
   /// Lobes with values in sr^-1.
@@ -85,8 +91,8 @@ struct LobeSet {
             patch_edges, retro_patch_edges,  half_turn,       both_sides,        mirror_plane, cos_min,
             kinks,       has_hidden_jumps(), peak_kinks,      both_orders,       piece_kinks,  common};
   }
-  /// The extent of some batches' lobes alone, for integrals over one of both directions.
-  [[nodiscard]] LobeExtent extent_of(std::span<const std::size_t> of_batches) const;
+  /// The extent of the lobes of one group alone, for integrals over one of both directions.
+  [[nodiscard]] LobeExtent extent_of_group(std::size_t group) const;
   /// Whether anisotropic lobes, or norms, have edges about the mirror direction and others about the retro direction.
   [[nodiscard]] bool has_opposite_patches() const { return !patch_edges.empty() && !retro_patch_edges.empty(); }
   /// The smallest of all widths.
