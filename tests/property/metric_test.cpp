@@ -469,7 +469,14 @@ TEST_P(AlbedoWork, OfMixturesTakesOneRuleForAllThatTheyHaveInCommon) {
   EXPECT_LT(apart.evaluations, 3 * apart.nodes);
 }
 
-// Of five kinks, the panels of L end on four.
+// Panels of L end on up to sixteen kinks where those of V have only few for each model.
+TEST_P(AlbedoWork, OfFiveModelsWithKinksOfTheirOwnIsNotMultipliedByThoseOfOthers) {
+  const WorkDone work = of({"cook_torrance_fresnel:m=0.4,ior=0.2,k=0", "ggx_fresnel:alpha=0.4,ior=0.3,k=0",
+                            "cook_torrance_blinn_fresnel:n=5,ior=0.4,k=0", "metal_phong_fresnel:n=5,ior=0.5,k=0",
+                            "lafortune_ngan:c_xy=-0.7,c_z=-0.5,n=2"});
+  EXPECT_EQ(work.evaluations, work.nodes);
+}
+
 TEST_P(AlbedoWork, OfMoreKinksThanPanelsEndOnTakesOneRuleForAll) {
   std::vector<std::string> many{"patch_power:n=0.5"};
   for (const std::string c_z : {"0.1", "0.2", "0.3", "0.4", "0.5"}) {

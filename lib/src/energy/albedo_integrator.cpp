@@ -27,6 +27,10 @@ LobeExtent extent_for(const LobeSet& lobes, Given given) {
   return lobes.both_orders && given == Given::viewer ? exchanged(lobes.extent()) : lobes.extent();
 }
 
+LobeExtent given_extent(const LobeSet& lobes, Given given) {
+  return lobes.both_orders && given == Given::viewer ? exchanged(lobes.given_extent()) : lobes.given_extent();
+}
+
 LobeExtent extent_of_group(const LobeSet& lobes, std::size_t group, Given given) {
   LobeExtent extent = lobes.extent_of_group(group);
   return lobes.both_orders && given == Given::viewer ? exchanged(std::move(extent)) : extent;
@@ -34,7 +38,7 @@ LobeExtent extent_of_group(const LobeSet& lobes, std::size_t group, Given given)
 
 AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given,
                                    double tolerance, SharedRule shared)
-    : rule_(extent_for(lobes, given), tolerance),
+    : rule_(shared == SharedRule::by_limits ? given_extent(lobes, given) : extent_for(lobes, given), tolerance),
       deltas_(device, lobes.deltas),
       given_(given),
       smooth_lobes_(static_cast<Eigen::Index>(lobes.smooth_lobes())),

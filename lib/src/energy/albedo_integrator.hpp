@@ -20,7 +20,9 @@ enum class Given { light, viewer };
 
 /// The extent of lobes for integrals over the other direction.
 [[nodiscard]] LobeExtent extent_for(const LobeSet& lobes, Given given);
-/// That of the lobes of one group.
+/// The same for the given direction where groups of lobes take rules of their own over the other one.
+[[nodiscard]] LobeExtent given_extent(const LobeSet& lobes, Given given);
+/// The extent of the lobes of one group, for integrals over the other direction.
 [[nodiscard]] LobeExtent extent_of_group(const LobeSet& lobes, std::size_t group, Given given);
 
 /// Which lobes take one rule over the other direction.

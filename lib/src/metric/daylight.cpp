@@ -96,7 +96,7 @@ void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& 
 }  // namespace
 
 std::size_t daylight_slabs(const LobeSet& lobes, const MetricOptions& options) {
-  return AlbedoRule(extent_for(lobes, given_of(lobes)), options.tolerance).slabs();
+  return AlbedoRule(given_extent(lobes, given_of(lobes)), options.tolerance).slabs();
 }
 
 void integrate_daylight_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,

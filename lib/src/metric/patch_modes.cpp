@@ -100,7 +100,7 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
     : lobes_(lobes),
       lighting_(lighting),
       device_(device),
-      rule_(extent_for(lobes, Given::viewer), lighting.radii(), has_mirror_and_retro(lobes)),
+      rule_(given_extent(lobes, Given::viewer), lighting.radii(), has_mirror_and_retro(lobes)),
       map_(device),
       work_(work),
       lobe_rows_(lobes.lobes()),

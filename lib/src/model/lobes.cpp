@@ -32,6 +32,8 @@ namespace {
 constexpr std::size_t kMostKinks = 4;
 /// Jumps, of formulas, matter more: without a limit at one the levels agree on what is wrong by a hundredth.
 constexpr std::size_t kMostJumps = 8;
+/// Panels of one direction alone that end on kinks: one or two more for each.
+constexpr std::size_t kMostGivenKinks = 16;
 /// Lobes wider than that, in radians of the half-vector, bend no integral more than panels bear.
 constexpr double kNarrow = 0.3;
 
@@ -424,6 +426,8 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   // Mirror images have the same products.
   set.both_sides = set.both_sides && !planes.are_shared();
   set.mirror_plane = planes.shared();
+  std::vector<LobeSet::Limits> limits_of_batches;
+  for (const CollectedLimits& limits : batch_limits) limits_of_batches.push_back(limits.limits(found.pumpings));
   for (const auto& [curves, pumping] : found.pumpings) {
     set.pieces.push_back(divisor_pieces(pumping));
     if (set.piece_kinks.size() >= kMostKinks) continue;
@@ -468,8 +472,15 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   set.retro_patch_radii.assign(retro_radii.begin(), retro_radii.end());
   set.kinks = least_smooth(kinks);
   for (const Kink& kink : mirror_kinks) set.peak_kinks.push_back({kink, 0});
+  set.given_kinks = set.kinks;
+  const bool have_own_rules = std::ranges::all_of(
+      limits_of_batches, [](const LobeSet::Limits& limits) { return limits.kinks.size() <= kMostKinks; });
+  if (have_own_rules && kinks.size() <= kMostGivenKinks) set.given_kinks.assign(kinks.begin(), kinks.end());
+  set.given_peak_kinks = set.peak_kinks;
   for (const auto& [kink, width] : narrow_kinks) {
-    if (!kink.is_anisotropic && has_kink(set.kinks, kink)) set.peak_kinks.push_back({kink, width});
+    if (kink.is_anisotropic) continue;
+    if (has_kink(set.kinks, kink)) set.peak_kinks.push_back({kink, width});
+    if (has_kink(set.given_kinks, kink)) set.given_peak_kinks.push_back({kink, width});
   }
   set.hides_jumps = hiding_materials(materials, found, set.kinks);
   set.patch_edges.assign(patch_edges.begin(), patch_edges.end());
@@ -480,8 +491,6 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     mix.setFromTriplets(list.begin(), list.end());
     set.mix.push_back(std::move(mix));
   }
-  std::vector<LobeSet::Limits> limits_of_batches;
-  for (const CollectedLimits& limits : batch_limits) limits_of_batches.push_back(limits.limits(found.pumpings));
   group_by_limits(limits_of_batches, set);
   return set;
 }

@@ -52,6 +52,10 @@ struct LobeSet {
   /// Where lobes are not smooth beside what the rules know anyway: the least smooth of all.
   std::vector<Kink> kinks;
   std::vector<PeakKink> peak_kinks;  ///< see LobeExtent
+  /// The same for panels of one given direction where groups of lobes take rules of their own over the other one: many
+  /// more kinks, as these cost nothing on other axes.
+  std::vector<Kink> given_kinks;
+  std::vector<PeakKink> given_peak_kinks;
   CommonKinks common;
   /// Materials with jumps that no limit of a panel follows: of formulas, where these have too many, or where they
   /// depend on azimuths about the normal.
@@ -90,6 +94,13 @@ struct LobeSet {
     return {narrowest,   patch_radii,        narrowest_retro, retro_patch_radii, pieces,       aspect,
             patch_edges, retro_patch_edges,  half_turn,       both_sides,        mirror_plane, cos_min,
             kinks,       has_hidden_jumps(), peak_kinks,      both_orders,       piece_kinks,  common};
+  }
+  /// For the given direction of rules by groups.
+  [[nodiscard]] LobeExtent given_extent() const {
+    LobeExtent all = extent();
+    all.kinks = given_kinks;
+    all.peak_kinks = given_peak_kinks;
+    return all;
   }
   /// The extent of the lobes of one group alone, for integrals over one of both directions.
   [[nodiscard]] LobeExtent extent_of_group(std::size_t group) const;

@@ -84,7 +84,7 @@ void group_by_limits(std::span<const LobeSet::Limits> limits, LobeSet& lobes) {
   constexpr std::size_t kMostOfAKind = 32;  // each makes nodes of its own on the host; the last takes what is left
   std::set<Kink> kinks;
   for (const auto& one : limits) kinks.insert(one.kinks.begin(), one.kinks.end());
-  const bool has_all_kinks = kinks.size() <= lobes.kinks.size();
+  const bool has_all_kinks = kinks.size() <= lobes.given_kinks.size();
   const std::vector<bool> is_mixed =
       has_all_kinks ? mixed_batches(limits, lobes) : std::vector<bool>(lobes.batches.size(), true);
   std::map<RuleKind, std::vector<std::size_t>> groups_of_kind;
