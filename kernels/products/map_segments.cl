@@ -9,11 +9,6 @@
 
 #define DECLARE(k) pack a##k = (pack)(0.0), b##k = (pack)(0.0), c##k = (pack)(0.0);
 
-#define DECLARE_ONE(k) pack only##k = (pack)(0.0);
-#define UPDATE_ONE(k) only##k = fma(value, (pack)(row[k]), only##k);
-#define STORE_ONE(k) \
-  if (y + (k) < s.columns) STORE_PACK(only##k, y + (k), out);
-
 #define UPDATE(k)                  \
   {                                \
     const pack t = (pack)(row[k]); \
@@ -58,7 +53,12 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void map_segments(
   }
 }
 
-// first_pack: the first one. global size: (packs from there on, segments).
+#define DECLARE_ONE(k) pack only##k = (pack)(0.0);
+#define UPDATE_ONE(k) only##k = fma(value, (pack)(row[k]), only##k);
+#define STORE_ONE(k) \
+  if (y + (k) < s.columns) STORE_PACK(only##k, y + (k), out);
+
+// As map_segments(), for one pack at a time from first_pack on. global size: (packs, segments).
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void map_segments_of_pack(
     __global const double* restrict from, const uint from_stride, __global double* restrict to, const uint to_stride,
     __global const segment* restrict segments, __global const double* restrict table, const uint first_pack) {

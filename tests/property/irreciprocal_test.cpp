@@ -98,9 +98,10 @@ TEST(Irreciprocal, HasAsManySlabsUnderDaylightAsItIsIntegratedBy) {
   const std::vector<Material> one{irreciprocal("fmax(cos_i - 3 * cos_o, 0.0)")};
   const LobeSet lobes = make_lobe_set(one, {});
   const MetricOptions options;
-  const AlbedoIntegrator integrator(device(), lobes, options.precision, Given::viewer, options.tolerance);
+  const AlbedoIntegrator integrator(device(), lobes, options.precision, Given::viewer, options.tolerance,
+                                    SharedRule::by_limits);
   EXPECT_EQ(daylight_slabs(lobes, options), integrator.rule().slabs());
-  EXPECT_NE(daylight_slabs(lobes, options), AlbedoRule(lobes.extent(), options.tolerance).slabs());
+  EXPECT_NE(daylight_slabs(lobes, options), AlbedoRule(lobes.given_extent(), options.tolerance).slabs());
 }
 
 // Patch light smooths over L: under any of them the square of x y^3 is half that of x y.

@@ -13,16 +13,17 @@ namespace {
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 TEST(RowTables, HaveScaledCosines) {
-  constexpr std::size_t kStride = 272;
-  for (const double psi : {0.0, 1e-9, 0.3, 1.7, 3.14159, 3.141592653589793}) {
-    std::vector<double> values(kStride);
-    write_cosines(psi, 2.5, kStride, values.data());
-    for (std::size_t m = 0; m < kStride; ++m) {
-      const auto order = static_cast<double>(m);
-      // T_m is at most m^2 times as far off as its argument: cos(psi) by half an ulp, and twice as much for what the
-      // steps of the recurrence add.
-      EXPECT_NEAR(values[m], 2.5 * std::cos(order * psi), 2.5 * std::max(1.0, order * order) * 1.5 * kEps)
-          << psi << ", " << m;
+  for (const std::size_t stride : {8U, 16U, 272U}) {
+    for (const double psi : {0.0, 1e-9, 0.3, 1.7, 3.14159, 3.141592653589793}) {
+      std::vector<double> values(stride);
+      write_cosines(psi, 2.5, stride, values.data());
+      for (std::size_t m = 0; m < stride; ++m) {
+        const auto order = static_cast<double>(m);
+        // T_m is at most m^2 times as far off as its argument: cos(psi) by half an ulp, and twice as much for what the
+        // steps of the recurrence add.
+        EXPECT_NEAR(values[m], 2.5 * std::cos(order * psi), 2.5 * std::max(1.0, order * order) * 1.5 * kEps)
+            << psi << ", " << m << " of " << stride;
+      }
     }
   }
 }

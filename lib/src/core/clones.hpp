@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>  // __GLIBC__
+
 // A function with LOBE_CLONES is compiled for newer processors, too, and the best one is chosen as the library is
 // loaded. That is before sanitizers are ready.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__GLIBC__) && __GNUC__ >= 12 && \

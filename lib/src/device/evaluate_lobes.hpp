@@ -22,8 +22,8 @@ class LobeEvaluator {
   LobeEvaluator(const Device& device, const std::vector<LobeBatch>& batches, Precision precision,
                 std::size_t node_capacity);
 
-  /// Evaluates all lobes at a block, which has tangents where lobes are anisotropic: value = factor * f. Returns
-  /// before the device has finished.
+  /// Evaluates all lobes at a block, which has tangents where lobes are anisotropic: value = factor * f. Waits
+  /// for what the device was given before, unless the block is empty, and returns before this is finished.
   void evaluate(const NodeBlock& nodes);
 
   /// A block size that keeps the values of so many lobes within the cache of a CPU.

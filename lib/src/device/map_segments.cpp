@@ -62,9 +62,9 @@ void SegmentMap::apply(const PackedRows& from, const PackedRows& to, std::size_t
     auto& queue = device_.implementation().queue;
     const std::size_t triples = packs / 3;
     const auto launch = [&](cl::Kernel& kernel, std::size_t items) {
+      if (items == 0) return;
       set_arguments(kernel, from.values, static_cast<cl_uint>(from.stride), to.values, static_cast<cl_uint>(to.stride),
                     segments.segments, segments.table);
-      if (items == 0) return;
       queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items, segments.count), cl::NDRange(1, 1));
     };
     launch(triples_, triples);

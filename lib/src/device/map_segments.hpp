@@ -25,7 +25,7 @@ struct MapSegment {
 /// Segments and their tables on the host: to[target + y] = sum over x of from[source + x step] table(x, y).
 class SegmentTable {
  public:
-  static constexpr std::size_t kTile = 8;  ///< of map_segments.cl
+  static constexpr std::size_t kTile = 8;  ///< columns that map_segments.cl takes at a time
   /// Columns of a table in memory.
   [[nodiscard]] static std::size_t padded(std::size_t columns);
 

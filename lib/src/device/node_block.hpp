@@ -31,7 +31,7 @@ class NodeBlock {
     push(node);
   }
   void clear() { size_ = 0; }
-  /// As many more nodes, without tangents, that set() gives in any order.
+  /// As many more nodes, without tangents, that set() or place_node() gives in any order.
   void extend(std::size_t count) { size_ += count; }
   void set(std::size_t column, const Node& node) {
     for (std::size_t row = 0; row < kRows; ++row) data_[row * capacity_ + column] = node[row];

@@ -11,7 +11,7 @@ namespace lobe {
 struct PackedRows {
   cl::Buffer values;
   std::size_t stride = 0;  ///< columns from one pack to the next
-  std::size_t packs = 0;   ///< a multiple of three, as accumulate_gram.cl reads them
+  std::size_t packs = 0;   ///< a multiple of three where accumulate_gram.cl reads them
   std::size_t width = 1;   ///< lanes
 
   [[nodiscard]] std::size_t rows() const { return packs * width; }

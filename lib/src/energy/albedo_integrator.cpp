@@ -1,6 +1,5 @@
 #include "energy/albedo_integrator.hpp"
 
-#include <algorithm>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -21,19 +20,22 @@ std::vector<IncidentNode> elevations_of(std::span<const IncidentNode> incident) 
   return elevations;
 }
 
+LobeExtent seen_from(const LobeSet& lobes, Given given, LobeExtent extent) {
+  return lobes.both_orders && given == Given::viewer ? exchanged(std::move(extent)) : extent;
+}
+
 }  // namespace
 
 LobeExtent extent_for(const LobeSet& lobes, Given given) {
-  return lobes.both_orders && given == Given::viewer ? exchanged(lobes.extent()) : lobes.extent();
+  return seen_from(lobes, given, lobes.extent());
 }
 
 LobeExtent given_extent(const LobeSet& lobes, Given given) {
-  return lobes.both_orders && given == Given::viewer ? exchanged(lobes.given_extent()) : lobes.given_extent();
+  return seen_from(lobes, given, lobes.given_extent());
 }
 
 LobeExtent extent_of_group(const LobeSet& lobes, std::size_t group, Given given) {
-  LobeExtent extent = lobes.extent_of_group(group);
-  return lobes.both_orders && given == Given::viewer ? exchanged(std::move(extent)) : extent;
+  return seen_from(lobes, given, lobes.extent_of_group(group));
 }
 
 AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given,
@@ -43,7 +45,7 @@ AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, P
       given_(given),
       smooth_lobes_(static_cast<Eigen::Index>(lobes.smooth_lobes())),
       lobes_(static_cast<Eigen::Index>(lobes.lobes())) {
-  const auto add = [&](std::span<const std::size_t> chosen, LobeExtent extent) {
+  const auto add = [&](std::span<const std::size_t> chosen, const LobeExtent& extent) {
     if (chosen.empty()) return;
     std::vector<LobeBatch> batches;
     for (const std::size_t b : chosen) batches.push_back(lobes.batches[b]);

@@ -27,7 +27,7 @@ enum class Given { light, viewer };
 
 /// Which lobes take one rule over the other direction.
 enum class SharedRule {
-  all,       ///< of isotropic ones, and of anisotropic ones about the same direction
+  all,       ///< all isotropic ones, and all anisotropic ones about one direction
   by_limits  ///< those of one group (LobeSet::group_of_batch)
 };
 
@@ -36,6 +36,7 @@ class AlbedoIntegrator {
  public:
   /// \param given differs for lobes that are not reciprocal alone
   /// \param tolerance of what the albedos are for (AlbedoRule)
+  /// \param shared by_limits where panels of the given direction end on kinks of all groups, as those of rule() do
   AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given = Given::light,
                    double tolerance = 0, SharedRule shared = SharedRule::all);
 

@@ -72,7 +72,7 @@ struct HalfVectorRay {
 /// the mirror image of L.
 class HalfVectorRule {
  public:
-  /// \param extent with an aspect of at least 1
+  /// \param extent with an aspect of at least 1 wherever nodes are placed
   explicit HalfVectorRule(LobeExtent extent);
 
   /// Directions V for L at an elevation above the horizon and an azimuth (radians): the sum over nodes of factor

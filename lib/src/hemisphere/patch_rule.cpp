@@ -58,14 +58,14 @@ PatchRule::PatchRule(LobeExtent extent, const std::vector<double>& light_radii, 
 const PatchRule::Rule& PatchRule::rule_of(const PanelEdge& low, const PanelEdge& high, int count, double degree,
                                           int known) const {
   const int more = more_nodes(high.at - low.at, degree);
-  return rules_.at({count + std::min(more, known), count + more});
+  return rules_->at({count + std::min(more, known), count + more});
 }
 
 PatchNodes PatchRule::place(double elevation, int count, int degree, int known) {
   // No panel is longer than a right angle.
   for (int more = 0; more <= more_nodes(std::numbers::pi / 2, degree) + 1; ++more) {
     const std::pair key(count + std::min(more, known), count + more);
-    const auto [place, is_new] = rules_.try_emplace(key);
+    const auto [place, is_new] = rules_->try_emplace(key);
     if (!is_new) continue;
     Rule& rule = place->second;
     rule.fine = gauss_rule(key.second);

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <limits>
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -54,6 +55,14 @@ class PatchRule {
   ///   not smooth in L where the discs of W about both part
   PatchRule(LobeExtent extent, const std::vector<double>& light_radii, bool has_mirror_and_retro);
 
+  /// The rule for some of the lobes: as this one over L, by their extent over X.
+  [[nodiscard]] PatchRule of(LobeExtent extent) const {
+    PatchRule part = *this;
+    part.extent_ = std::move(extent);
+    part.extent_.common = CommonKinks::all();
+    return part;
+  }
+
   [[nodiscard]] std::size_t slabs() const { return outer_.slabs(); }
   /// Nodes in the elevation of L, as AlbedoRule::incident_nodes.
   [[nodiscard]] std::vector<IncidentNode> incident_nodes(std::size_t slab, int level) const {
@@ -93,7 +102,8 @@ class PatchRule {
   LobeExtent extent_;
   std::vector<PanelEdge> light_edges_;
   AlbedoRule outer_;
-  std::map<std::pair<int, int>, Rule> rules_;  ///< by their numbers of nodes, and of fine ones
+  using Rules = std::map<std::pair<int, int>, Rule>;
+  std::shared_ptr<Rules> rules_ = std::make_shared<Rules>();  ///< by their numbers of nodes, and of fine ones
 };
 
 }  // namespace lobe

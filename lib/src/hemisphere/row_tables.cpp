@@ -57,9 +57,9 @@ LOBE_CLONES void write_cosines(double psi, double scale, std::size_t stride, dou
   const double slope = 2 * std::cos(psi);
   double first[kTableLanes] = {1, slope / 2};
   for (std::size_t m = 2; m < kTableLanes; ++m) first[m] = slope * first[m - 1] - first[m - 2];
-  const double eighth = slope * first[kTableLanes - 1] - first[kTableLanes - 2];  // cos(8 psi)
-  Lanes now = *at_lanes(first);                                                   // orders m .. m + 7
-  Lanes before = {eighth, first[7], first[6], first[5], first[4], first[3], first[2], first[1]};
+  const double eighth = slope * first[kTableLanes - 1] - first[kTableLanes - 2];                  // cos(8 psi)
+  Lanes now = *at_lanes(first);                                                                   // orders m .. m + 7
+  Lanes before = {eighth, first[7], first[6], first[5], first[4], first[3], first[2], first[1]};  // m - 8 .. m - 1
   now *= scale;
   before *= scale;
   const double step = 2 * eighth;

@@ -7,7 +7,7 @@ namespace lobe {
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Numbers that rows of tables are a multiple of.
+/// Rows of tables have a multiple of so many numbers.
 constexpr std::size_t kTableLanes = 8;
 
 /// Writes scale cos(m psi) for m = 0 .. stride - 1.

@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,12 +16,15 @@
 #include "device/accumulate_gram.hpp"
 #include "device/buffers.hpp"
 #include "device/error.hpp"
+#include "device/implementation.hpp"
 #include "device/tabulate_patch_light.hpp"
 #include "energy/albedo_integrator.hpp"
+#include "hemisphere/geometry.hpp"
 #include "hemisphere/patch_operator.hpp"
 #include "hemisphere/patch_response.hpp"
 #include "hemisphere/refinement.hpp"
 #include "hemisphere/row_tables.hpp"
+#include "lobe/core/error.hpp"
 #include "model/rule_groups.hpp"
 
 namespace lobe {
@@ -56,7 +60,7 @@ Eigen::MatrixXd square_root(const Eigen::MatrixXd& w, double rounding) {
   return solver.eigenvectors().rightCols(rank) * sizes.asDiagonal();
 }
 
-static_assert(kTableLanes % SegmentTable::kTile == 0);
+static_assert(SegmentTable::kTile % kTableLanes == 0);
 
 /// The map from the nodes of a ring to orders: integrals of l_j cos(m psi) for their Lagrange polynomials l_j.
 /// \param stride of the table
@@ -93,35 +97,35 @@ bool has_mirror_and_retro(const LobeSet& lobes) {
 }  // namespace
 
 PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work)
-    : PatchModes(device, lobes, lighting, work, std::make_shared<Lights>(kDegrees.size())) {}
+    : PatchModes(device, lobes, lighting, work,
+                 PatchRule(given_extent(lobes, Given::viewer), lighting.radii(), has_mirror_and_retro(lobes)),
+                 std::make_shared<Lights>(kDegrees.size())) {}
 
 PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work,
-                       std::shared_ptr<Lights> lights)
+                       PatchRule rule, std::shared_ptr<Lights> lights)
     : lobes_(lobes),
       lighting_(lighting),
       device_(device),
-      rule_(given_extent(lobes, Given::viewer), lighting.radii(), has_mirror_and_retro(lobes)),
+      rule_(std::move(rule)),
       map_(device),
       work_(work),
       lobe_rows_(lobes.lobes()),
       delta_shares_(device, lobes.deltas),
       lights_(std::move(lights)) {
-  std::size_t width = 1;
+  const std::size_t width = device.implementation().pack_width;
   for (const RuleGroup& chosen : rule_groups(lobes)) {
     std::vector<LobeBatch> batches;
     for (const std::size_t b : chosen.batches) batches.push_back(lobes.batches[b]);
     LobeEvaluator evaluator(device, batches, Precision::double_precision,
                             std::max(kLongestRing, LobeEvaluator::suggested_capacity(chosen.lobes.size())));
-    width = evaluator.width();
     const auto& rows = evaluator.rows();
     for (std::size_t k = 0; k < rows.size(); ++k) {
       lobe_rows_[static_cast<std::size_t>(chosen.lobes[k])] = delta_pack_ * width + rows[k];
     }
-    const std::size_t packs = rows.back() / width + 1;
+    const std::size_t packs = rows.back() / width + 1;  // the evaluator's last ones may be empty
     NodeBlock block(evaluator.node_stride());
     PackedRows orders{{}, 0, packs, width};
-    groups_.push_back({chosen.lobes,
-                       PatchRule(extent_of_group(lobes, chosen.number, Given::viewer), lighting.radii(), false),
+    groups_.push_back({chosen.lobes, rule_.of(extent_of_group(lobes, chosen.number, Given::viewer)),
                        std::move(evaluator), std::move(block), delta_pack_, std::move(orders)});
     delta_pack_ += packs;
   }
@@ -131,7 +135,7 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
   const std::size_t delta_packs = (lobes.deltas.size() + width - 1) / width;
   modes_ = {{}, 0, delta_pack_ + delta_packs, width};
   rows_ = modes_;
-  rows_.packs = (rows_.packs + 2) / 3 * 3;
+  rows_.packs = (rows_.packs + 2) / 3 * 3;  // as Gram matrices read them
 }
 
 std::size_t PatchModes::degrees() {
@@ -167,8 +171,8 @@ PatchModes::Light& PatchModes::light(std::size_t degree) {
                 values);
     made.columns += rank;
   }
+  made.placed_roots = map_.place(made.roots);
   known = std::move(made);
-  known->placed_roots = map_.place(known->roots);
   return *known;
 }
 
@@ -179,7 +183,7 @@ void PatchModes::grow(PackedRows& rows, std::size_t columns) const {
   checked("cannot prepare patch lights", [&] {
     if (rows.values() != nullptr && rows.values.getInfo<CL_MEM_SIZE>() >= count * sizeof(double)) return;
     rows.values = make_workspace(device_, count * sizeof(double));
-    clear(device_, rows.values, count);  // the padding stays zero
+    clear(device_, rows.values, count);  // so that the padding is finite
   });
 }
 
@@ -198,6 +202,11 @@ void PatchModes::evaluate_orders(Group& group, std::span<const PatchRing> rings,
       around.add(block.size(), 1, rings[end].nodes.size(), end * columns, static_cast<std::size_t>(orders));
       block.extend(rings[end].nodes.size());
       ++end;
+    }
+    if (end == first) {
+      throw NumericError("patch lights: a ring of directions has " + std::to_string(rings[first].nodes.size()) +
+                         " nodes; expected at most " + std::to_string(block.capacity()) +
+                         ", as for fewer patches of different radii in one material");
     }
     parallel_for(end - first, [&](std::size_t k) {
       const PatchRing& ring = rings[first + k];
@@ -315,7 +324,7 @@ void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
       work_.seconds_nodes += watch_.lap();
     }
     write_deltas(incident, shares.col(index(at)), lit);
-    map_.apply(modes_, rows_, modes_.packs, *lit.placed_roots);
+    map_.apply(modes_, rows_, modes_.packs, lit.placed_roots);
     use();
     work_.seconds_values += watch_.lap();
   }

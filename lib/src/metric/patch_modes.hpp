@@ -12,10 +12,12 @@
 #include "core/stopwatch.hpp"
 #include "device/evaluate_lobes.hpp"
 #include "device/map_segments.hpp"
+#include "device/node_block.hpp"
 #include "device/packed_rows.hpp"
 #include "hemisphere/disc_nodes.hpp"
 #include "hemisphere/disc_polynomials.hpp"
 #include "hemisphere/patch_rule.hpp"
+#include "lobe/device/device.hpp"
 #include "metric/products.hpp"
 #include "model/delta_shares.hpp"
 
@@ -40,7 +42,7 @@ class PatchModes {
   /// Some of the lobes at the same nodes.
   /// \param lobes of the same extent
   [[nodiscard]] PatchModes of(const LobeSet& lobes) const {
-    return PatchModes(device_, lobes, lighting_, work_, lights_);
+    return PatchModes(device_, lobes, lighting_, work_, rule_, lights_);
   }
 
   [[nodiscard]] std::size_t slabs() const { return rule_.slabs(); }
@@ -63,19 +65,11 @@ class PatchModes {
     std::vector<Eigen::MatrixXd> matrices;
     DiscNodes nodes;
     SegmentTable roots;  ///< from nodes to rows: S times the polynomials at the nodes
-    std::optional<DeviceSegments> placed_roots;
+    DeviceSegments placed_roots;
     std::size_t columns;  ///< of S
   };
   using Lights = std::vector<std::optional<Light>>;
 
-  PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work,
-             std::shared_ptr<Lights> lights);
-
-  Light& light(std::size_t degree);
-  /// For each L of a slab the rows f S sqrt(weight) of all lobes.
-  /// \param use called when they are there
-  template <typename Use>
-  void visit(std::size_t slab, ModeLevel level, const Use& use);
   /// Lobes that take one rule over X, sampled together.
   struct Group {
     std::vector<Eigen::Index> lobes;  ///< columns of the lobe set
@@ -86,6 +80,14 @@ class PatchModes {
     PackedRows orders;       ///< integrals of f(L, X) cos(m psi) over psi: column ring * orders + m
   };
 
+  PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work, PatchRule rule,
+             std::shared_ptr<Lights> lights);
+
+  Light& light(std::size_t degree);
+  /// For each L of a slab the rows f S sqrt(weight) of all lobes.
+  /// \param use called when they are there
+  template <typename Use>
+  void visit(std::size_t slab, ModeLevel level, const Use& use);
   void evaluate_orders(Group& group, std::span<const PatchRing> rings, const DiscPolynomials& polynomials);
   /// The table that takes orders to nodes.
   void write_along(const Group& group, const PatchNodes& placed, double weight, const Light& lit);
@@ -109,7 +111,8 @@ class PatchModes {
   std::size_t delta_pack_ = 0;          ///< the first of delta parts
   PackedRows modes_;                    ///< f_m at the nodes, times sqrt(weight of L)
   PackedRows rows_;                     ///< f S sqrt(weight of L)
-  /// From nodes to orders: the host writes one while the device reads the other.
+  /// From nodes to orders: the host writes one while the device reads the other. Of `along_` one is enough, as nodes of
+  /// a group are evaluated before it is written again.
   std::array<SegmentTable, 2> around_;
   std::size_t around_turn_ = 0;
   SegmentTable along_;  ///< from orders to nodes

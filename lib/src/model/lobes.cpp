@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -32,7 +33,8 @@ namespace {
 constexpr std::size_t kMostKinks = 4;
 /// Jumps, of formulas, matter more: without a limit at one the levels agree on what is wrong by a hundredth.
 constexpr std::size_t kMostJumps = 8;
-/// Panels of one direction alone that end on kinks: one or two more for each.
+/// Most kinks that panels of the given direction end on where groups of lobes have rules of their own over the other
+/// one: each costs one or two panels there, and none on other axes.
 constexpr std::size_t kMostGivenKinks = 16;
 /// Lobes wider than that, in radians of the half-vector, bend no integral more than panels bear.
 constexpr double kNarrow = 0.3;
@@ -353,6 +355,26 @@ std::vector<bool> hiding_materials(std::span<const Material> materials, const Co
   return hides;
 }
 
+/// Groups of lobes, and the kinks that panels of the given direction end on: all, if rules of every group end on its
+/// own ones.
+void group(std::span<const LobeSet::Limits> of_batches, const std::set<Kink>& all, LobeSet& set) {
+  set.given_kinks = set.kinks;
+  // Panels of one direction never end on kinks that see azimuths.
+  const auto count = static_cast<std::size_t>(std::ranges::count(all, false, &Kink::is_anisotropic));
+  if (count <= kMostGivenKinks) {
+    set.given_kinks.clear();
+    std::ranges::copy_if(all, std::back_inserter(set.given_kinks),
+                         [](const Kink& kink) { return !kink.is_anisotropic; });
+    group_by_limits(of_batches, true, set);
+    const bool have_all_kinks = std::ranges::all_of(set.group_limits, [](const LobeSet::Limits& limits) {
+      return least_smooth({limits.kinks.begin(), limits.kinks.end()}).size() == limits.kinks.size();
+    });
+    if (have_all_kinks) return;
+    set.given_kinks = set.kinks;
+  }
+  group_by_limits(of_batches, false, set);
+}
+
 }  // namespace
 
 LobeExtent LobeSet::extent_of_group(std::size_t group) const {
@@ -472,15 +494,9 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   set.retro_patch_radii.assign(retro_radii.begin(), retro_radii.end());
   set.kinks = least_smooth(kinks);
   for (const Kink& kink : mirror_kinks) set.peak_kinks.push_back({kink, 0});
-  set.given_kinks = set.kinks;
-  const bool have_own_rules = std::ranges::all_of(
-      limits_of_batches, [](const LobeSet::Limits& limits) { return limits.kinks.size() <= kMostKinks; });
-  if (have_own_rules && kinks.size() <= kMostGivenKinks) set.given_kinks.assign(kinks.begin(), kinks.end());
   set.given_peak_kinks = set.peak_kinks;
   for (const auto& [kink, width] : narrow_kinks) {
-    if (kink.is_anisotropic) continue;
-    if (has_kink(set.kinks, kink)) set.peak_kinks.push_back({kink, width});
-    if (has_kink(set.given_kinks, kink)) set.given_peak_kinks.push_back({kink, width});
+    if (!kink.is_anisotropic && has_kink(set.kinks, kink)) set.peak_kinks.push_back({kink, width});
   }
   set.hides_jumps = hiding_materials(materials, found, set.kinks);
   set.patch_edges.assign(patch_edges.begin(), patch_edges.end());
@@ -491,7 +507,10 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     mix.setFromTriplets(list.begin(), list.end());
     set.mix.push_back(std::move(mix));
   }
-  group_by_limits(limits_of_batches, set);
+  group(limits_of_batches, kinks, set);
+  for (const auto& [kink, width] : narrow_kinks) {
+    if (!kink.is_anisotropic && has_kink(set.given_kinks, kink)) set.given_peak_kinks.push_back({kink, width});
+  }
   return set;
 }
 

@@ -82,7 +82,7 @@ struct LobeSet {
     std::vector<std::function<unsigned(double cos_i, double cos_o)>> pieces;
   };
   /// By batch the group that it is in: those of one group take one rule over one direction, at the other one given.
-  /// They are not smooth in the same places, or are parts of one material (model/rule_groups.hpp).
+  /// They have the same kinks and edges, or are parts of one material (model/rule_groups.hpp).
   std::vector<std::size_t> group_of_batch;
   std::vector<Limits> group_limits;  ///< by group
 
@@ -95,7 +95,7 @@ struct LobeSet {
             patch_edges, retro_patch_edges,  half_turn,       both_sides,        mirror_plane, cos_min,
             kinks,       has_hidden_jumps(), peak_kinks,      both_orders,       piece_kinks,  common};
   }
-  /// For the given direction of rules by groups.
+  /// The extent for panels of the given direction where groups have rules of their own over the other one.
   [[nodiscard]] LobeExtent given_extent() const {
     LobeExtent all = extent();
     all.kinks = given_kinks;

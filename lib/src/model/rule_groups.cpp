@@ -1,7 +1,6 @@
 #include "model/rule_groups.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <set>
 #include <type_traits>
@@ -80,13 +79,12 @@ void unite(LobeSet::Limits& all, const LobeSet::Limits& more) {
 
 }  // namespace
 
-void group_by_limits(std::span<const LobeSet::Limits> limits, LobeSet& lobes) {
+void group_by_limits(std::span<const LobeSet::Limits> limits, bool are_apart, LobeSet& lobes) {
   constexpr std::size_t kMostOfAKind = 32;  // each makes nodes of its own on the host; the last takes what is left
-  std::set<Kink> kinks;
-  for (const auto& one : limits) kinks.insert(one.kinks.begin(), one.kinks.end());
-  const bool has_all_kinks = kinks.size() <= lobes.given_kinks.size();
+  lobes.group_of_batch.clear();
+  lobes.group_limits.clear();
   const std::vector<bool> is_mixed =
-      has_all_kinks ? mixed_batches(limits, lobes) : std::vector<bool>(lobes.batches.size(), true);
+      are_apart ? mixed_batches(limits, lobes) : std::vector<bool>(lobes.batches.size(), true);
   std::map<RuleKind, std::vector<std::size_t>> groups_of_kind;
   std::vector<std::size_t> first_batch;  // by group
   for (std::size_t b = 0; b < limits.size(); ++b) {

@@ -11,12 +11,13 @@ namespace lobe {
 
 /// Fills in LobeSet::group_of_batch and group_limits of a set that is complete but for these.
 ///
-/// Lobes that are smooth in the same places take one rule over one direction at the other one given: panels that end on
-/// the kinks and edges of others are of no use to them. All that materials mix with lobes of other limits stay
-/// together, as errors of two rules are independent and may cancel by accident in a mixture; and all lobes where the
-/// set has more kinks than panels of the given direction end on, as what its levels miss levels of the other one cover.
+/// Lobes that have the same kinks and edges take one rule over one direction at the other one given: panels that end on
+/// those of others are of no use to them. All that materials mix with lobes of other limits stay together, as errors of
+/// two rules are independent and may cancel by accident in a mixture.
 /// \param limits by batch
-void group_by_limits(std::span<const LobeSet::Limits> limits, LobeSet& lobes);
+/// \param are_apart no: all lobes of a kind stay together, as where panels of the given direction do not end on all
+///   kinks; what its levels miss levels of the other one cover
+void group_by_limits(std::span<const LobeSet::Limits> limits, bool are_apart, LobeSet& lobes);
 
 /// Batches and lobes of one group.
 struct RuleGroup {

@@ -4,7 +4,8 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// Work done by a computation, for stage tables and benches.
+/// Work done by a computation, for stage tables and benches. Where host and device work at the same time, as under
+/// patch lights, times are those that the host spends or waits.
 struct WorkDone {
   std::uint64_t nodes = 0;        ///< quadrature nodes visited
   std::uint64_t evaluations = 0;  ///< lobes evaluated at nodes
