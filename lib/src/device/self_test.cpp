@@ -466,6 +466,7 @@ Accuracy test_segment_map(const Device& device) {
   }
   const std::vector<double> weights(entries, entries + 2 * padded);
   SegmentMap map(device);
+  const FinishOnFailure finish_table(device);
   Comparison comparison(kDouble);
   for (const std::size_t packs : {3U, 2U}) {  // three at a time, and one by one
     PackedRows target{make_workspace(device, rows.packed.rows() * kColumns * sizeof(double)), kColumns, 3,

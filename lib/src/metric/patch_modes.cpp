@@ -333,6 +333,7 @@ void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
 }
 
 Eigen::MatrixXd PatchModes::products(std::size_t slab, ModeLevel level) {
+  const FinishOnFailure finish_roots(device_);
   grow(rows_, light(level.degree).columns);
   GramAccumulator gram(device_, rows_, 0, rows_.rows());
   visit(slab, level, [&] { gram.add(rows_.stride); });
@@ -360,6 +361,7 @@ Eigen::VectorXd PatchModes::squares(std::size_t slab, ModeLevel level,
                                                             term.value());
     }
   }
+  const FinishOnFailure finish_roots(device_);
   grow(rows_, light(level.degree).columns);
   DifferenceAccumulator accumulator(device_, rows_, terms);
   visit(slab, level, [&] { accumulator.add(rows_.stride); });
