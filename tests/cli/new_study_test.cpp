@@ -106,7 +106,7 @@ TEST_F(NewStudy, HasLightingsUnderWhichItsModelsHaveNorms) {
   EXPECT_EQ(lightings("phong,ward"), "point daylight ");
   EXPECT_EQ(lightings("phong,mirror"), "daylight ");
   EXPECT_EQ(lightings("mirror,ward_duer"), "mean-albedo ");
-  EXPECT_EQ(lightings("basic_patch_anisotropic,retro_patch_anisotropic"), "daylight ");
+  EXPECT_EQ(lightings("basic_patch_anisotropic,retro_patch_anisotropic"), "point daylight ");
   make({"new-study", "--models", "mirror,rrim", "-o", "mirrors.toml"});
   EXPECT_THAT(make({"run", "mirrors.toml", "-o", "out"}).output, StartsWith("out/mirrors.h5\n"));
 }

@@ -59,6 +59,10 @@ double PatchEdge::reach(double azimuth) const {
   return radius / (larger * std::pow(1 + std::pow(std::min(u, v) / larger, power), 1 / power));
 }
 
+double PatchEdge::farthest() const {
+  return radius / ratio * (power > 2 ? std::numbers::sqrt2 : 1);
+}
+
 std::vector<double> sign_changes(const std::function<double(double)>& f, std::span<const PanelEdge> limits) {
   constexpr int kSteps = 8;
   std::vector<double> zeros;

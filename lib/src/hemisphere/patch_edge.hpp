@@ -19,6 +19,8 @@ struct PatchEdge {
 
   /// Length of z at an azimuth.
   [[nodiscard]] double reach(double azimuth) const;
+  /// A bound of it at all azimuths.
+  [[nodiscard]] double farthest() const;
 
   auto operator<=>(const PatchEdge&) const = default;
 };

@@ -112,7 +112,7 @@ bool are_measurable(std::span<const Material> materials, const Lighting& lightin
   const LightingTraits& traits = traits_of(lighting);
   if (traits.is_of_means) return true;
   const LobeSet lobes = make_lobe_set(materials, {.with_deltas = true, .with_anisotropic = true});
-  if (!traits.takes_deltas && (!lobes.deltas.empty() || lobes.has_opposite_patches())) return false;
+  if (!traits.takes_deltas && !lobes.deltas.empty()) return false;
   return lobes.infinite.empty();
 }
 
@@ -121,7 +121,7 @@ std::size_t formula_slabs(std::span<const Material> materials, const Lighting& l
   if (traits.slabs == nullptr) return 0;
   try {
     const LobeSet lobes = lobes_of(materials, lighting, options);
-    return lobes.has_opposite_patches() || !lobes.infinite.empty() ? 0 : traits.slabs(lobes, options);
+    return lobes.infinite.empty() ? traits.slabs(lobes, options) : 0;
   } catch (const Error&) {
     return 0;
   }

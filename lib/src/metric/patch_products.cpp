@@ -50,39 +50,6 @@ double rule_safety(const LobeSet& lobes) {
 /// Errors below this share of what a slab may be off need no refinement.
 constexpr double kInactive = 0.1;
 
-/// The lobes of these numbers, rising, and all delta parts; without materials.
-LobeSet select(const LobeSet& lobes, std::span<const Eigen::Index> wanted) {
-  LobeSet some = lobes;
-  some.mix.clear();
-  some.names.clear();
-  for (const Eigen::Index lobe : wanted) some.names.push_back(lobes.names[static_cast<std::size_t>(lobe)]);
-  auto next = wanted.begin();
-  Eigen::Index first = 0;
-  for (LobeBatch& batch : some.batches) {
-    const auto all = std::exchange(batch.coefficients, {});
-    const auto curves = std::exchange(batch.curves, {});
-    const auto end = first + static_cast<Eigen::Index>(all.size());
-    for (; next != wanted.end() && *next < end; ++next) {
-      const auto place = static_cast<std::size_t>(*next - first);
-      batch.coefficients.push_back(all[place]);
-      if (!curves.empty()) batch.curves.push_back(curves[place]);
-    }
-    first = end;
-  }
-  std::vector<std::size_t> kept;
-  for (std::size_t b = 0; b < some.batches.size(); ++b) {
-    if (!some.batches[b].coefficients.empty()) kept.push_back(b);
-  }
-  some.is_retro_patch.clear();
-  some.group_of_batch.clear();
-  for (const std::size_t b : kept) {
-    some.is_retro_patch.push_back(lobes.is_retro_patch[b]);
-    some.group_of_batch.push_back(lobes.group_of_batch[b]);
-  }
-  std::erase_if(some.batches, [](const LobeBatch& batch) { return batch.coefficients.empty(); });
-  return some;
-}
-
 /// Refines the slabs of the integral over L until all products reach the tolerance.
 class SlabRefinement {
  public:
@@ -156,7 +123,7 @@ class SlabRefinement {
 class SlabRefinement::Partial {
  public:
   Partial(SlabRefinement& refinement, const std::vector<Eigen::Index>& lobes)
-      : refinement_(refinement), lobes_(lobes), some_(select(refinement.lobes_, lobes)) {
+      : refinement_(refinement), lobes_(lobes), some_(refinement.lobes_.selected(lobes)) {
     if (lobes.size() < refinement.lobes_.lobes()) modes_.emplace(refinement.modes_.of(some_));
   }
 

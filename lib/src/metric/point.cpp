@@ -3,8 +3,10 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/stopwatch.hpp"
@@ -12,6 +14,7 @@
 #include "device/accumulate_gram.hpp"
 #include "device/rounding.hpp"
 #include "hemisphere/half_difference_rule.hpp"
+#include "hemisphere/opposite_patch_rule.hpp"
 #include "hemisphere/refinement.hpp"
 #include "lobe/core/error.hpp"
 #include "metric/products.hpp"
@@ -32,19 +35,26 @@ constexpr double kAzimuthShare = 0.1;
 /// bound for all of them. A rule with few nodes on the other axes tells.
 constexpr int kProbeNodes = 2;
 
+using PairRule = std::variant<HalfDifferenceRule, OppositePatchRule>;
+
+std::size_t slabs_of(const PairRule& rule) {
+  return std::visit([](const auto& known) { return known.slabs(); }, rule);
+}
+
 class PointIntegrator {
  public:
-  PointIntegrator(const Device& device, const LobeSet& lobes, const MetricOptions& options, WorkDone& work)
-      : rule_(lobes.extent(), options.tolerance),
+  PointIntegrator(const Device& device, const LobeSet& lobes, PairRule rule, const MetricOptions& options,
+                  WorkDone& work)
+      : rule_(std::move(rule)),
         evaluator_(device, lobes.batches, options.precision, LobeEvaluator::suggested_capacity(lobes.lobes())),
         block_(evaluator_.node_stride(), evaluator_.needs_tangents()),
         work_(work),
-        azimuth_shares_(rule_.slabs()) {}
+        azimuth_shares_(slabs_of(rule_)) {}
 
   /// Takes fewer azimuths of H where products differ by less than a share of this, relative to the norms.
   void set_goal(double goal) { goal_ = goal; }
 
-  [[nodiscard]] std::size_t slabs() const { return rule_.slabs(); }
+  [[nodiscard]] std::size_t slabs() const { return slabs_of(rule_); }
 
   /// Products of lobes over one slab, lobes x lobes, symmetric.
   Eigen::MatrixXd products(std::size_t slab, int level) {
@@ -92,9 +102,9 @@ class PointIntegrator {
   }
 
   /// Products by few nodes on the other axes.
-  Eigen::MatrixXd probe(std::size_t slab, double share) {
+  Eigen::MatrixXd probe(const HalfDifferenceRule& rule, std::size_t slab, double share) {
     return sums([&](const auto& accumulate) {
-      rule_.place_gauss(slab, kProbeNodes, rule_.azimuths(kNodesPerPanel.front(), share), block_, [&] {
+      rule.place_gauss(slab, kProbeNodes, rule.azimuths(kNodesPerPanel.front(), share), block_, [&] {
         evaluator_.evaluate(block_);
         accumulate();
         finish(evaluator_.device());
@@ -106,18 +116,20 @@ class PointIntegrator {
   /// Share of the azimuths that a slab's products need: the least that changes none of them by more than the goal
   /// allows.
   double azimuth_share(std::size_t slab) {
-    if (!evaluator_.needs_tangents() || !rule_.has_equal_azimuths() || rule_.has_scattered_azimuths()) return 1;
+    const auto* rule = std::get_if<HalfDifferenceRule>(&rule_);
+    if (rule == nullptr || !evaluator_.needs_tangents()) return 1;
+    if (!rule->has_equal_azimuths() || rule->has_scattered_azimuths()) return 1;
     constexpr std::array kShares{0.125, 0.25, 0.35, 0.5, 0.7};
     std::optional<double>& known = azimuth_shares_[slab];
     if (known) return *known;
     if (norms_.size() == 0) {
       for (std::size_t k = 0; k < slabs(); ++k) {
-        const Eigen::VectorXd squares = probe(k, kShares.front()).diagonal();
+        const Eigen::VectorXd squares = probe(*rule, k, kShares.front()).diagonal();
         norms_ = k == 0 ? squares : Eigen::VectorXd(norms_ + squares);
       }
       norms_ = norms_.cwiseMax(0).cwiseSqrt().eval();
     }
-    const auto azimuths_of = [&](double share) { return rule_.azimuths(kNodesPerPanel.front(), share); };
+    const auto azimuths_of = [&](double share) { return rule->azimuths(kNodesPerPanel.front(), share); };
     const Eigen::MatrixXd allowed = kAzimuthShare * goal_ * norms_ * norms_.transpose();
     Eigen::MatrixXd right;
     std::size_t tried = 0;
@@ -125,8 +137,8 @@ class PointIntegrator {
       const std::size_t azimuths = azimuths_of(share);
       if (azimuths == tried || azimuths == azimuths_of(1)) continue;
       tried = azimuths;
-      if (right.size() == 0) right = probe(slab, 1);
-      const Eigen::ArrayXXd off = (probe(slab, share) - right).cwiseAbs();
+      if (right.size() == 0) right = probe(*rule, slab, 1);
+      const Eigen::ArrayXXd off = (probe(*rule, slab, share) - right).cwiseAbs();
       if (!(off <= allowed.array()).all()) continue;
       known = share;
       return share;
@@ -150,10 +162,14 @@ class PointIntegrator {
       work_.seconds_gram += watch_.lap();
       block_.clear();
     };
-    rule_.place(slab, level, block_, take, share);
+    if (const auto* rule = std::get_if<HalfDifferenceRule>(&rule_)) {
+      rule->place(slab, level, block_, take, share);
+    } else {
+      std::get<OppositePatchRule>(rule_).place(slab, level, block_, take);
+    }
   }
 
-  HalfDifferenceRule rule_;
+  PairRule rule_;
   LobeEvaluator evaluator_;
   NodeBlock block_;
   WorkDone& work_;
@@ -163,57 +179,198 @@ class PointIntegrator {
   Stopwatch watch_;
 };
 
-/// Pairs of materials whose squared distance is lost in the cancellation of products are integrated as differences.
-void refine_close_pairs(PointIntegrator& integrator, const std::vector<int>& levels, const LobeSet& lobes,
+/// Lobes that one rule takes together, and the products that are its own.
+struct Part {
+  enum class Pairs { all, with_retro_edge, across };
+
+  std::vector<Eigen::Index> numbers;  ///< of the lobes, rising; none where they are all of the set
+  LobeSet lobes;                      ///< these
+  PairRule rule;
+  Pairs pairs = Pairs::all;
+};
+
+/// By lobe, whether it has an anisotropic edge about the retro direction.
+std::vector<bool> retro_edges(const LobeSet& lobes) {
+  std::vector<bool> found;
+  for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
+    found.resize(found.size() + lobes.batches[b].coefficients.size(), lobes.is_retro_patch[b]);
+  }
+  return found;
+}
+
+/// The rules for a set of lobes: one knows anisotropic edges about one direction only. With edges about both, a second
+/// one takes those about the retro direction and all lobes without any, and a third one the products across.
+std::vector<Part> parts_of(const LobeSet& lobes, double tolerance) {
+  std::vector<Part> parts;
+  if (!lobes.has_opposite_patches()) {
+    parts.push_back({{}, lobes, HalfDifferenceRule(lobes.extent(), tolerance)});
+    return parts;
+  }
+  const std::vector<bool> has_retro_edge = retro_edges(lobes);
+  const auto select = [&](const auto& is_wanted) {
+    std::vector<Eigen::Index> numbers;
+    for (std::size_t k = 0; k < lobes.lobes(); ++k) {
+      if (is_wanted(k)) numbers.push_back(static_cast<Eigen::Index>(k));
+    }
+    return numbers;
+  };
+  const auto part_of = [&](const std::vector<Eigen::Index>& numbers) {
+    LobeSet part = lobes.selected(numbers);
+    part.narrowest = part.narrowest_retro = 1;
+    for (const std::size_t group : part.group_of_batch) {
+      part.narrowest = std::min(part.narrowest, lobes.group_limits[group].narrowest);
+      part.narrowest_retro = std::min(part.narrowest_retro, lobes.group_limits[group].narrowest_retro);
+    }
+    return part;
+  };
+  const auto add = [&](std::vector<Eigen::Index> numbers, LobeSet part, PairRule rule, Part::Pairs pairs) {
+    parts.push_back({std::move(numbers), std::move(part), std::move(rule), pairs});
+  };
+  const auto about_mirror = select([&](std::size_t k) { return !has_retro_edge[k]; });
+  LobeSet mirror = part_of(about_mirror);
+  mirror.retro_patch_edges.clear();
+  add(about_mirror, mirror, HalfDifferenceRule(mirror.extent(), tolerance), Part::Pairs::all);
+  const auto about_retro = select([&](std::size_t k) { return !lobes.has_mirror_edge[k]; });
+  LobeSet retro = part_of(about_retro);
+  retro.patch_edges.clear();
+  add(about_retro, retro, HalfDifferenceRule(retro.extent(), tolerance), Part::Pairs::with_retro_edge);
+  const auto with_edges = select([&](std::size_t k) { return has_retro_edge[k] || lobes.has_mirror_edge[k]; });
+  const LobeSet across = part_of(with_edges);
+  add(with_edges, across, OppositePatchRule(across.extent()), Part::Pairs::across);
+  return parts;
+}
+
+/// The integrators of all parts of a set, whose slabs come one after the other.
+class JointIntegrator {
+ public:
+  JointIntegrator(const Device& device, const LobeSet& lobes, const MetricOptions& options, WorkDone& work)
+      : has_retro_edge_(retro_edges(lobes)), lobes_(static_cast<Eigen::Index>(lobes.lobes())) {
+    for (Part& part : parts_of(lobes, options.tolerance)) {
+      PointIntegrator integrator(device, part.lobes, std::move(part.rule), options, work);
+      parts_.push_back({std::move(part.numbers), part.pairs, std::move(integrator)});
+    }
+  }
+
+  void set_goal(double goal) {
+    for (Share& part : parts_) part.integrator.set_goal(goal);
+  }
+
+  [[nodiscard]] std::size_t slabs() const {
+    std::size_t sum = 0;
+    for (const Share& part : parts_) sum += part.integrator.slabs();
+    return sum;
+  }
+
+  /// Products of all lobes over one slab: 0 where they are those of another part.
+  Eigen::MatrixXd products(std::size_t slab, int level) {
+    Share& part = part_of(slab);
+    Eigen::MatrixXd some = part.integrator.products(slab, level);
+    if (part.numbers.empty()) return some;
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(lobes_, lobes_);
+    for (std::size_t i = 0; i < part.numbers.size(); ++i) {
+      for (std::size_t j = 0; j < part.numbers.size(); ++j) {
+        const bool is_retro = has_retro_edge_[static_cast<std::size_t>(part.numbers[i])];
+        const bool is_other_retro = has_retro_edge_[static_cast<std::size_t>(part.numbers[j])];
+        if (part.pairs == Part::Pairs::with_retro_edge && !is_retro && !is_other_retro) continue;
+        if (part.pairs == Part::Pairs::across && is_retro == is_other_retro) continue;
+        all(part.numbers[i], part.numbers[j]) = some(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      }
+    }
+    return all;
+  }
+
+  /// A slab's squared norms of combinations of lobes that one part has; none if it is another part's slab.
+  std::vector<double> squares(std::size_t part, std::size_t slab, int level,
+                              const std::vector<Combination>& combinations) {
+    if (&part_of(slab) != &parts_[part]) return {};
+    return parts_[part].integrator.squares(slab, level, combinations);
+  }
+
+  [[nodiscard]] std::size_t parts() const { return parts_.size(); }
+  /// Padded row of a lobe in a part that has all its products; none if it does not.
+  [[nodiscard]] std::optional<std::size_t> row(std::size_t part, Eigen::Index lobe) const {
+    const Share& share = parts_[part];
+    if (share.numbers.empty()) return share.integrator.row(lobe);
+    const auto place = std::ranges::lower_bound(share.numbers, lobe);
+    if (share.pairs == Part::Pairs::across || place == share.numbers.end() || *place != lobe) return std::nullopt;
+    return share.integrator.row(place - share.numbers.begin());
+  }
+
+ private:
+  struct Share {
+    std::vector<Eigen::Index> numbers;
+    Part::Pairs pairs;
+    PointIntegrator integrator;
+  };
+
+  /// The part of a slab of all, whose own number it becomes.
+  Share& part_of(std::size_t& slab) {
+    std::size_t part = 0;
+    for (; slab >= parts_[part].integrator.slabs(); ++part) slab -= parts_[part].integrator.slabs();
+    return parts_[part];
+  }
+
+  std::vector<bool> has_retro_edge_;
+  Eigen::Index lobes_;
+  std::vector<Share> parts_;
+};
+
+/// Pairs of materials whose squared distance is lost in the cancellation of products are integrated as differences,
+/// where one part has all their lobes.
+void refine_close_pairs(JointIntegrator& integrator, const std::vector<int>& levels, const LobeSet& lobes,
                         const MetricOptions& options, ProductSums& sums) {
   // Above this share of the squared norms the cancellation costs less than six digits of the distance (or, in single
   // precision, than the samples' own errors).
   const double share = options.precision == Precision::double_precision ? 1e-6 : 3e-2;
-  const auto pairs = find_close_pairs(sums, share);
-  if (pairs.empty()) return;
-  const auto rows = differences(lobes, pairs);
-  std::vector<Combination> combinations(pairs.size());
-  for (Eigen::Index e = 0; e < rows.rows(); ++e) {
-    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator term(rows, e); term; ++term) {
-      combinations[static_cast<std::size_t>(e)].terms.emplace_back(integrator.row(term.col()), term.value());
+  std::vector<ClosePair> left = find_close_pairs(sums, share);
+  for (std::size_t part = 0; part < integrator.parts() && !left.empty(); ++part) {
+    std::vector<ClosePair> pairs;
+    std::vector<ClosePair> others;
+    std::vector<Combination> combinations;
+    const auto all = differences(lobes, left);
+    for (Eigen::Index e = 0; e < all.rows(); ++e) {
+      const ClosePair& pair = left[static_cast<std::size_t>(e)];
+      Combination combination;
+      bool has_all = true;
+      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator term(all, e); term; ++term) {
+        const auto row = integrator.row(part, term.col());
+        has_all = has_all && row.has_value();
+        if (has_all) combination.terms.emplace_back(*row, term.value());
+      }
+      (has_all ? pairs : others).push_back(pair);
+      if (has_all) combinations.push_back(std::move(combination));
     }
-  }
-  Eigen::VectorXd value = Eigen::VectorXd::Zero(rows.rows());
-  Eigen::VectorXd error = value;
-  for (std::size_t slab = 0; slab < levels.size(); ++slab) {
-    const auto fine = integrator.squares(slab, levels[slab], combinations);
-    const auto coarse = integrator.squares(slab, levels[slab] - 1, combinations);
-    for (std::size_t e = 0; e < pairs.size(); ++e) {
-      value(static_cast<Eigen::Index>(e)) += fine[e];
-      error(static_cast<Eigen::Index>(e)) += std::abs(fine[e] - coarse[e]);
+    left = std::move(others);
+    if (pairs.empty()) continue;
+    const auto count = static_cast<Eigen::Index>(pairs.size());
+    Eigen::VectorXd value = Eigen::VectorXd::Zero(count);
+    Eigen::VectorXd error = value;
+    for (std::size_t slab = 0; slab < levels.size(); ++slab) {
+      const auto fine = integrator.squares(part, slab, levels[slab], combinations);
+      if (fine.empty()) continue;
+      const auto coarse = integrator.squares(part, slab, levels[slab] - 1, combinations);
+      for (std::size_t e = 0; e < pairs.size(); ++e) {
+        value(static_cast<Eigen::Index>(e)) += fine[e];
+        error(static_cast<Eigen::Index>(e)) += std::abs(fine[e] - coarse[e]);
+      }
+      report_progress(options, Lighting::point(), 1);
     }
-    report_progress(options, Lighting::point(), 1);
+    replace_distances(sums, pairs, differences(lobes, pairs), value, error, product_rounding(options.precision) / 4);
   }
-  replace_distances(sums, pairs, rows, value, error, product_rounding(options.precision) / 4);
-}
-
-/// Name of the first anisotropic lobe with an edge about the retro direction.
-std::string retro_patch_name(const LobeSet& lobes) {
-  std::size_t name = 0;
-  for (std::size_t b = 0; !lobes.is_retro_patch[b]; ++b) name += lobes.batches[b].coefficients.size();
-  return lobes.names[name];
 }
 
 }  // namespace
 
 std::size_t point_slabs(const LobeSet& lobes, const MetricOptions& options) {
-  return HalfDifferenceRule(lobes.extent(), options.tolerance).slabs();
+  std::size_t sum = 0;
+  for (const Part& part : parts_of(lobes, options.tolerance)) sum += slabs_of(part.rule);
+  return sum;
 }
 
 void integrate_point_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                               ProductSums& sums, WorkDone& work) {
-  if (lobes.has_opposite_patches()) {
-    throw NumericError("under point light '" + retro_patch_name(lobes) +
-                       "' has no products beside anisotropic patches about the mirror direction or powers of norms "
-                       "with kinks; 'daylight' and 'mean-albedo' take them together");
-  }
   report_progress(options, Lighting::point(), 0);
-  PointIntegrator integrator(device, lobes, options, work);
+  JointIntegrator integrator(device, lobes, options, work);
   const auto slabs = integrator.slabs();
   const SlabWork share(sums.slabs(), slabs);
 

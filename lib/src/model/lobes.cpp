@@ -392,6 +392,44 @@ LobeExtent LobeSet::extent_of_group(std::size_t group) const {
   return part;
 }
 
+LobeSet LobeSet::selected(std::span<const Eigen::Index> wanted) const {
+  LobeSet some = *this;
+  some.mix.clear();
+  some.names.clear();
+  for (const Eigen::Index lobe : wanted) some.names.push_back(names[static_cast<std::size_t>(lobe)]);
+  auto next = wanted.begin();
+  some.has_mirror_edge.clear();
+  for (const Eigen::Index lobe : wanted) {
+    if (static_cast<std::size_t>(lobe) < smooth_lobes()) {
+      some.has_mirror_edge.push_back(has_mirror_edge[static_cast<std::size_t>(lobe)]);
+    }
+  }
+  Eigen::Index first = 0;
+  for (LobeBatch& batch : some.batches) {
+    const auto all = std::exchange(batch.coefficients, {});
+    const auto curves = std::exchange(batch.curves, {});
+    const auto end = first + static_cast<Eigen::Index>(all.size());
+    for (; next != wanted.end() && *next < end; ++next) {
+      const auto place = static_cast<std::size_t>(*next - first);
+      batch.coefficients.push_back(all[place]);
+      if (!curves.empty()) batch.curves.push_back(curves[place]);
+    }
+    first = end;
+  }
+  std::vector<std::size_t> kept;
+  for (std::size_t b = 0; b < some.batches.size(); ++b) {
+    if (!some.batches[b].coefficients.empty()) kept.push_back(b);
+  }
+  some.is_retro_patch.clear();
+  some.group_of_batch.clear();
+  for (const std::size_t b : kept) {
+    some.is_retro_patch.push_back(is_retro_patch[b]);
+    some.group_of_batch.push_back(group_of_batch[b]);
+  }
+  std::erase_if(some.batches, [](const LobeBatch& batch) { return batch.coefficients.empty(); });
+  return some;
+}
+
 LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   if (materials.empty()) throw ArgumentError("no materials; expected at least one");
   std::size_t channels = 1;
@@ -420,6 +458,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     if (lobe.kernel.curves > 0) set.batches.back().curves.push_back(lobe.curves);
     column.emplace(&key, set.names.size());
     set.names.push_back(lobe.name);
+    set.has_mirror_edge.push_back(lobe.patch_edge.has_value());
     if (lobe.is_infinite) set.infinite.push_back(lobe.name);
     set.narrowest = std::min(set.narrowest, lobe.width);
     set.narrowest_retro = std::min(set.narrowest_retro, lobe.retro_width);

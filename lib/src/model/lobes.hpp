@@ -44,9 +44,11 @@ struct LobeSet {
   std::vector<PatchEdge> patch_edges;
   std::vector<PatchEdge> retro_patch_edges;
   std::vector<bool> is_retro_patch;  ///< by batch: anisotropic, with its edge about the retro direction
-  bool half_turn = true;             ///< half a turn about the normal leaves all lobes the same
-  bool both_sides = false;           ///< see LobeExtent
-  bool both_orders = false;          ///< see LobeExtent
+  /// By lobe with values in sr^-1: anisotropic, with an edge or a norm with kinks about the mirror direction.
+  std::vector<bool> has_mirror_edge;
+  bool half_turn = true;                              ///< half a turn about the normal leaves all lobes the same
+  bool both_sides = false;                            ///< see LobeExtent
+  bool both_orders = false;                           ///< see LobeExtent
   std::optional<double> mirror_plane = std::nullopt;  ///< see LobeExtent
 
   /// Where lobes are not smooth beside what the rules know anyway: the least smooth of all.
@@ -106,6 +108,8 @@ struct LobeSet {
   [[nodiscard]] LobeExtent extent_of_group(std::size_t group) const;
   /// Whether anisotropic lobes, or norms, have edges about the mirror direction and others about the retro direction.
   [[nodiscard]] bool has_opposite_patches() const { return !patch_edges.empty() && !retro_patch_edges.empty(); }
+  /// The lobes of these numbers, rising, with what is known of all; without materials.
+  [[nodiscard]] LobeSet selected(std::span<const Eigen::Index> wanted) const;
   /// The smallest of all widths.
   [[nodiscard]] double sharpest() const { return std::min(narrowest, narrowest_retro); }
 };

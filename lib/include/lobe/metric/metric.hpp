@@ -114,7 +114,7 @@ struct RouteChoice {
 
 /// Whether measure() has products of these materials under a lighting. Under mean-albedo all materials have them. Under
 /// other lightings, lobes that grow as 1/(N.L) at grazing angles have infinite norms; under point light so have delta
-/// parts, and anisotropic patches about the mirror direction have no products with those about the retro direction.
+/// parts.
 /// \throws ArgumentError for materials that are refused under any lighting
 [[nodiscard]] bool are_measurable(std::span<const Material> materials, const Lighting& lighting);
 
