@@ -146,6 +146,15 @@ TEST(AnisotropicPatches, HaveTheDaylightProductsOfTheirAlbedos) {
 }
 
 // |f|^2 = C^2 and f . lambert = C / pi times the same area of pairs of directions.
+TEST(AnisotropicPatches, AboutTheRetroDirectionHaveThePointProductsOfThoseAboutTheMirrorDirection) {
+  const auto found =
+      measure(device(), parse_all({kEllipse.retro(), "lambert"}), Lighting::point(), with_tolerance(1e-3));
+
+  const double expected = point_product(kEllipse, kEllipse);
+  EXPECT_NEAR(found.combined.gram(0, 0), expected, found.combined.gram_error(0, 0) + 1e-8);
+  EXPECT_NEAR(found.combined.gram(0, 1), expected / (kEllipse.constant() * pi), found.combined.gram_error(0, 1) + 1e-8);
+}
+
 // The coarsest levels of the rules are for loose tolerances, and agree by accident if at all.
 TEST(AnisotropicPatches, LeaveTheNormsOfOtherLobesWithinLooseErrors) {
   const std::vector<std::pair<std::string, std::string>> pairs{

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "hemisphere/half_difference_rule.hpp"
-#include "reference/models.hpp"
 
 namespace lobe::test {
 namespace {

@@ -85,9 +85,9 @@ std::vector<PanelEdge> AlbedoRule::incident_azimuths(double elevation) const {
   return turn_panels(std::move(limits), extent_.aspect, extent_.half_turn);
 }
 
-std::vector<IncidentNode> AlbedoRule::incident_nodes(std::size_t slab, int level) const {
-  const GaussRule gauss = gauss_rule(nodes_per_panel(level));
-  const auto equal_turns = incident_turns(extent_, nodes_per_panel(level));
+std::vector<IncidentNode> AlbedoRule::incident_nodes_of(std::size_t slab, int nodes_per_panel) const {
+  const GaussRule gauss = gauss_rule(nodes_per_panel);
+  const auto equal_turns = incident_turns(extent_, nodes_per_panel);
   const bool is_scattered = extent_.hides_jumps && !extent_.mirror_plane;
   std::vector<IncidentNode> nodes;
   for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {

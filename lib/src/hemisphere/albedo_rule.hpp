@@ -51,7 +51,10 @@ class AlbedoRule {
 
   /// Nodes of a slab: the sum of weight a1 a2 is its part of the integral of a1 a2 dmu. Those of one elevation follow
   /// each other.
-  [[nodiscard]] std::vector<IncidentNode> incident_nodes(std::size_t slab, int level) const;
+  [[nodiscard]] std::vector<IncidentNode> incident_nodes(std::size_t slab, int level) const {
+    return incident_nodes_of(slab, nodes_per_panel(level));
+  }
+  [[nodiscard]] std::vector<IncidentNode> incident_nodes_of(std::size_t slab, int nodes_per_panel) const;
 
   /// Directions V for one L: the sum over nodes of factor f(L, V) is the albedo a(L). Flushing as in
   /// HalfDifferenceRule::place, except that the last, partly filled block is left to the caller.

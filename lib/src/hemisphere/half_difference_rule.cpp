@@ -523,7 +523,8 @@ std::size_t HalfDifferenceRule::azimuths(int nodes_per_panel, double azimuth_sha
 void HalfDifferenceRule::place(std::size_t slab, int level, NodeBlock& block, const std::function<void()>& flush,
                                double azimuth_share) const {
   // The mirrored rule has no panels for what other lobes do about the half-vector, and needs all its nodes for them.
-  const bool has_others = extent_.retro_width < 1 || extent_.common.attenuation || extent_.common.mirror_cosine;
+  const bool has_others = extent_.retro_width < 1 || extent_.common.attenuation || extent_.common.mirror_cosine ||
+                          !extent_.kinks.empty() || extent_.hides_jumps;
   const bool is_loose = is_loose_ && !turns_.empty() && !(is_mirrored_ && has_others);
   const auto& nodes_per_panel = is_loose ? kLooseNodesPerPanel : kNodesPerPanel;
   place_gauss(slab, nodes_per_panel[static_cast<std::size_t>(level)], block, flush, azimuth_share);

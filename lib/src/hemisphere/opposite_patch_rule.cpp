@@ -71,6 +71,7 @@ OppositePatchRule::OppositePatchRule(LobeExtent extent)
     const LobeExtent other = exchanged(extent_);
     extent_.kinks.insert(extent_.kinks.end(), other.kinks.begin(), other.kinks.end());
   }
+  extent_.kinks.insert(extent_.kinks.end(), extent_.piece_kinks.begin(), extent_.piece_kinks.end());
 }
 
 std::vector<PanelEdge> OppositePatchRule::across(const Ray& ray) const {
@@ -136,6 +137,7 @@ std::vector<PanelEdge> OppositePatchRule::lengths_v(const Ray& ray, double azimu
   constexpr int kSteps = 3;
   std::vector<PanelEdge> found;
   for (const Kink& kink : extent_.kinks) {
+    if (kink.is_anisotropic) continue;
     const auto value = [&](double other) {
       const double square = (length * length + other * other) / 4;
       const double half = length * other * between / 2;
@@ -143,14 +145,6 @@ std::vector<PanelEdge> OppositePatchRule::lengths_v(const Ray& ray, double azimu
       pair.cos_i = std::sqrt(std::max(0.0, 1 - (square - half)));
       pair.cos_o = std::sqrt(std::max(0.0, 1 - (square + half)));
       pair.cos_between = (length - other) * (length + other) / 4 + pair.cos_i * pair.cos_o;
-      const double u_x = length * ray.cosine;
-      const double u_y = length * ray.sine;
-      const double v_x = other * std::cos(azimuth);
-      const double v_y = other * std::sin(azimuth);
-      pair.in_x = (u_x - v_x) / 2;
-      pair.in_y = (u_y - v_y) / 2;
-      pair.out_x = (u_x + v_x) / 2;
-      pair.out_y = (u_y + v_y) / 2;
       return kink(pair);
     };
     append_zeros(value, edges, kSteps, true, found);

@@ -19,9 +19,9 @@ namespace lobe {
 /// the base plane, or in a domain with s = sin(theta_max), where
 ///   |u|^2 + |v|^2 + 2 |u| |v| |cos(phi_u - phi_v)| < 4 s^2.
 /// Panels of phi_u end on the axes of the norms of u, those of phi_v on the axes of the norms of v, where u and v are
-/// orthogonal (N.L = N.V) and where two edges begin to meet that limit; panels of |u| on edges and where the limit
-/// passes an edge of v, those of |v| on edges and kinks. Where a lobe has a profile instead of an edge, radii shrink
-/// towards 0.
+/// orthogonal (N.L = N.V) and where the ends of two edges lie on that limit; panels of |u| on edges and where the limit
+/// passes an edge of v, those of |v| on edges and on kinks that do not see azimuths. Lobes with such edges have no
+/// other kinks. Where a lobe has a profile instead of an edge, radii shrink towards 0.
 class OppositePatchRule {
  public:
   /// \param extent of lobes of both kinds, with edges about both directions

@@ -64,9 +64,9 @@ class PatchRule {
   }
 
   [[nodiscard]] std::size_t slabs() const { return outer_.slabs(); }
-  /// Nodes in the elevation of L, as AlbedoRule::incident_nodes.
-  [[nodiscard]] std::vector<IncidentNode> incident_nodes(std::size_t slab, int level) const {
-    return outer_.incident_nodes(slab, level);
+  /// Nodes in the elevation of L, as AlbedoRule::incident_nodes_of.
+  [[nodiscard]] std::vector<IncidentNode> incident_nodes(std::size_t slab, int nodes_per_panel) const {
+    return outer_.incident_nodes_of(slab, nodes_per_panel);
   }
 
   /// Directions X for one L: the sum over nodes of factor f(L, X), the weights of both panels and g at their fine nodes

@@ -15,6 +15,7 @@
 #include "hemisphere/disc_polynomials.hpp"
 #include "hemisphere/patch_operator.hpp"
 #include "hemisphere/patch_rule.hpp"
+#include "hemisphere/refinement.hpp"
 #include "lobe/core/error.hpp"
 #include "metric/function_products.hpp"
 #include "metric/function_sums.hpp"
@@ -101,7 +102,7 @@ class PatchIntegrator {
     const PatchLevel& level = kPatchLevels[at];
     if (!lights_[at]) lights_[at].emplace(lighting_, level);
     FunctionSums sums(channels_, functions_.size());
-    const auto nodes = rule_.incident_nodes(slab, level.incident);
+    const auto nodes = rule_.incident_nodes(slab, kNodesPerPanel[static_cast<std::size_t>(level.incident)]);
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       add(nodes[k], turn_of(placed_++, static_cast<int>(at)), level, *lights_[at], sums);
       if (options_.progress && !options_.progress(lighting_.name(), 0)) throw Cancelled("cancelled");

@@ -42,6 +42,10 @@ constexpr std::array<Degree, 7> kDegrees{{{24, 3}, {36, 4}, {54, 5}, {80, 6}, {1
 /// Gauss nodes per panel and axis of X, beside those for the degree. Rules of L have levels of their own, as many.
 constexpr std::array<int, 9> kNodes{5, 6, 7, 8, 9, 10, 12, 14, 16};
 static_assert(kNodes.size() == kNodesPerPanel.size());
+/// The same for loose tolerances, where rules of L have the levels of kLooseNodesPerPanel.
+constexpr std::array<int, 9> kLooseNodes{4, 5, 6, 7, 8, 10, 12, 14, 16};
+static_assert(kLooseNodes.size() == kLooseNodesPerPanel.size());
+constexpr double kLoosePatchTolerance = 1e-3;
 
 constexpr std::size_t kLongestRing = 2048;  // nodes; the evaluator takes whole rings
 
@@ -96,15 +100,17 @@ bool has_mirror_and_retro(const LobeSet& lobes) {
 
 }  // namespace
 
-PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work)
-    : PatchModes(device, lobes, lighting, work,
+PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, double tolerance,
+                       WorkDone& work)
+    : PatchModes(device, lobes, lighting, tolerance >= kLoosePatchTolerance && !lobes.has_fractional_edge, work,
                  PatchRule(given_extent(lobes, Given::viewer), lighting.radii(), has_mirror_and_retro(lobes)),
                  std::make_shared<Lights>(kDegrees.size())) {}
 
-PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work,
-                       PatchRule rule, std::shared_ptr<Lights> lights)
+PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, bool is_loose,
+                       WorkDone& work, PatchRule rule, std::shared_ptr<Lights> lights)
     : lobes_(lobes),
       lighting_(lighting),
+      is_loose_(is_loose),
       device_(device),
       rule_(std::move(rule)),
       map_(device),
@@ -136,6 +142,7 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
   modes_ = {{}, 0, delta_pack_ + delta_packs, width};
   rows_ = modes_;
   rows_.packs = (rows_.packs + 2) / 3 * 3;  // as Gram matrices read them
+  rows_below_ = rows_;
 }
 
 std::size_t PatchModes::degrees() {
@@ -146,34 +153,51 @@ std::size_t PatchModes::rules() {
   return kNodes.size();
 }
 
+int PatchModes::nodes_of_x(std::size_t rule) const {
+  return is_loose_ ? kLooseNodes[rule] : kNodes[rule];
+}
+
+std::vector<IncidentNode> PatchModes::incident_nodes(std::size_t slab, std::size_t rule) const {
+  return rule_.incident_nodes(slab, is_loose_ ? kLooseNodesPerPanel[rule] : kNodesPerPanel[rule]);
+}
+
 PatchModes::Light& PatchModes::light(std::size_t degree) {
   auto& known = (*lights_)[degree];
   if (known) return *known;
   const DiscPolynomials polynomials(kDegrees[degree].degree);
-  Light made{polynomials,
-             patch_light_matrices(polynomials, light_discs(lighting_.shares(kDegrees[degree].radii))),
-             DiscNodes(kDegrees[degree].degree),
-             {},
-             {},
-             0};
-  std::vector<Eigen::MatrixXd> roots(made.matrices.size());
+  Light made{polynomials, patch_light_matrices(polynomials, light_discs(lighting_.shares(kDegrees[degree].radii))),
+             {},          DiscNodes(kDegrees[degree].degree),
+             {},          std::nullopt};
+  made.square_roots.resize(made.matrices.size());
   const double rounding = 1e-15 * made.matrices[0].diagonal().maxCoeff();
-  parallel_for(roots.size(), [&](std::size_t m) { roots[m] = square_root(made.matrices[m], rounding); });
-  SegmentTable& table = made.roots;
-  for (std::size_t m = 0; m < roots.size(); ++m) {
+  parallel_for(made.matrices.size(),
+               [&](std::size_t m) { made.square_roots[m] = square_root(made.matrices[m], rounding); });
+  made.roots = make_roots(made, made.nodes);
+  known = std::move(made);
+  return *known;
+}
+
+const PatchModes::Roots& PatchModes::roots_below(std::size_t degree) {
+  Light& own = light(degree);
+  if (!own.roots_below) own.roots_below = make_roots(light(degree - 1), own.nodes);
+  return *own.roots_below;
+}
+
+PatchModes::Roots PatchModes::make_roots(const Light& light, const DiscNodes& nodes) const {
+  Roots made;
+  for (std::size_t m = 0; m < light.square_roots.size(); ++m) {
     const int order = static_cast<int>(m);
-    const auto rank = static_cast<std::size_t>(roots[m].cols());
-    const Eigen::ArrayXd radii = made.nodes.radii().head(made.nodes.count(order));
-    const Eigen::MatrixXd values = polynomials.radial(order, radii, radii.pow(order)) * roots[m];
-    write_table(table,
-                table.add(static_cast<std::size_t>(made.nodes.first(order)), 1, static_cast<std::size_t>(radii.size()),
-                          made.columns, rank),
+    const auto rank = static_cast<std::size_t>(light.square_roots[m].cols());
+    const Eigen::ArrayXd radii = nodes.radii().head(nodes.count(order));
+    const Eigen::MatrixXd values = light.polynomials.radial(order, radii, radii.pow(order)) * light.square_roots[m];
+    write_table(made.table,
+                made.table.add(static_cast<std::size_t>(nodes.first(order)), 1, static_cast<std::size_t>(radii.size()),
+                               made.columns, rank),
                 values);
     made.columns += rank;
   }
-  made.placed_roots = map_.place(made.roots);
-  known = std::move(made);
-  return *known;
+  made.placed = map_.place(made.table);
+  return made;
 }
 
 void PatchModes::grow(PackedRows& rows, std::size_t columns) const {
@@ -312,19 +336,18 @@ void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
   const auto& polynomials = lit.polynomials;
   grow(modes_, static_cast<std::size_t>(lit.nodes.size()));
   work_.seconds_host += watch_.lap();
-  const auto nodes = rule_.incident_nodes(slab, static_cast<int>(level.rule));
+  const auto nodes = incident_nodes(slab, level.rule);
   const Eigen::MatrixXd shares = delta_shares(nodes);
   for (std::size_t at = 0; at < nodes.size(); ++at) {
     const IncidentNode& incident = nodes[at];
     for (Group& group : groups_) {
-      const auto placed = group.rule.place(incident.elevation, kNodes[level.rule], polynomials.degree());
+      const auto placed = group.rule.place(incident.elevation, nodes_of_x(level.rule), polynomials.degree());
       evaluate_orders(group, placed.rings, polynomials);
       write_along(group, placed, incident.weight, lit);
       map_.apply(group.orders, modes_, group.orders.packs, map_.place(along_));
       work_.seconds_nodes += watch_.lap();
     }
     write_deltas(incident, shares.col(index(at)), lit);
-    map_.apply(modes_, rows_, modes_.packs, lit.placed_roots);
     use();
     work_.seconds_values += watch_.lap();
   }
@@ -334,9 +357,34 @@ void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
 
 Eigen::MatrixXd PatchModes::products(std::size_t slab, ModeLevel level) {
   const FinishOnFailure finish_roots(device_);
-  grow(rows_, light(level.degree).columns);
+  const Roots& roots = light(level.degree).roots;
+  grow(rows_, roots.columns);
   GramAccumulator gram(device_, rows_, 0, rows_.rows());
-  visit(slab, level, [&] { gram.add(rows_.stride); });
+  visit(slab, level, [&] {
+    map_.apply(modes_, rows_, modes_.packs, roots.placed);
+    gram.add(rows_.stride);
+  });
+  return products_of(gram, slab, level);
+}
+
+std::array<Eigen::MatrixXd, 2> PatchModes::products_of_two_degrees(std::size_t slab, ModeLevel level) {
+  const FinishOnFailure finish_roots(device_);
+  const Roots& roots = light(level.degree).roots;
+  const Roots& below = roots_below(level.degree);
+  grow(rows_, roots.columns);
+  grow(rows_below_, below.columns);
+  GramAccumulator gram(device_, rows_, 0, rows_.rows());
+  GramAccumulator gram_below(device_, rows_below_, 0, rows_below_.rows());
+  visit(slab, level, [&] {
+    map_.apply(modes_, rows_, modes_.packs, roots.placed);
+    gram.add(rows_.stride);
+    map_.apply(modes_, rows_below_, modes_.packs, below.placed);
+    gram_below.add(rows_below_.stride);
+  });
+  return {products_of(gram_below, slab, {level.degree - 1, level.rule}), products_of(gram, slab, level)};
+}
+
+Eigen::MatrixXd PatchModes::products_of(GramAccumulator& gram, std::size_t slab, ModeLevel level) {
   const auto sums = gram.take();
   const auto n = index(lobes_.lobes());
   Eigen::MatrixXd products(n, n);
@@ -362,9 +410,13 @@ Eigen::VectorXd PatchModes::squares(std::size_t slab, ModeLevel level,
     }
   }
   const FinishOnFailure finish_roots(device_);
-  grow(rows_, light(level.degree).columns);
+  const Roots& roots = light(level.degree).roots;
+  grow(rows_, roots.columns);
   DifferenceAccumulator accumulator(device_, rows_, terms);
-  visit(slab, level, [&] { accumulator.add(rows_.stride); });
+  visit(slab, level, [&] {
+    map_.apply(modes_, rows_, modes_.packs, roots.placed);
+    accumulator.add(rows_.stride);
+  });
   const auto sums = accumulator.take();
   Eigen::VectorXd squares = Eigen::Map<const Eigen::VectorXd>(sums.data(), index(sums.size()));
   const auto deltas = index(lobes_.deltas.size());
@@ -382,7 +434,7 @@ Eigen::MatrixXd PatchModes::missing_from_deltas(std::size_t slab, ModeLevel leve
   const auto n = index(deltas.size());
   Eigen::MatrixXd missing = Eigen::MatrixXd::Zero(n, n);
   PatchLight opposite(device_, discs);
-  const auto nodes = rule_.incident_nodes(slab, static_cast<int>(level.rule));
+  const auto nodes = incident_nodes(slab, level.rule);
   const Eigen::MatrixXd shares = delta_shares(nodes);
   for (std::size_t at_node = 0; at_node < nodes.size(); ++at_node) {
     const IncidentNode& incident = nodes[at_node];

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
+#include "device/accumulate_gram.hpp"
 #include "device/evaluate_lobes.hpp"
 #include "device/map_segments.hpp"
 #include "device/node_block.hpp"
@@ -37,12 +38,13 @@ struct ModeLevel {
 class PatchModes {
  public:
   /// The lobes stay where they are, here and below.
-  PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work);
+  /// \param tolerance of products; loose ones begin with coarser rules, but for profiles that end as fractional powers
+  PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, double tolerance, WorkDone& work);
 
   /// Some of the lobes at the same nodes.
   /// \param lobes of the same extent
   [[nodiscard]] PatchModes of(const LobeSet& lobes) const {
-    return PatchModes(device_, lobes, lighting_, work_, rule_, lights_);
+    return PatchModes(device_, lobes, lighting_, is_loose_, work_, rule_, lights_);
   }
 
   [[nodiscard]] std::size_t slabs() const { return rule_.slabs(); }
@@ -52,21 +54,32 @@ class PatchModes {
   /// Products of lobes over one slab, lobes x lobes, symmetric.
   [[nodiscard]] Eigen::MatrixXd products(std::size_t slab, ModeLevel level);
 
+  /// The same at the degree below and at this one, of which the former costs little: its polynomials are among these.
+  /// \param level of a degree above 0
+  [[nodiscard]] std::array<Eigen::MatrixXd, 2> products_of_two_degrees(std::size_t slab, ModeLevel level);
+
   /// Squared norms of combinations of lobes over one slab.
   /// \param combinations combinations x lobes
   [[nodiscard]] Eigen::VectorXd squares(std::size_t slab, ModeLevel level,
                                         const Eigen::SparseMatrix<double, Eigen::RowMajor>& combinations);
 
  private:
+  /// From nodes to rows: S times the polynomials at the nodes.
+  struct Roots {
+    SegmentTable table;
+    DeviceSegments placed;
+    std::size_t columns = 0;  ///< of S
+  };
+
   /// The polynomials of a degree and W = S S^T in them. Lobes are not projected on each of the polynomials, but on
   /// those that are 1 at one of the nodes and 0 at the others: these do not depend on L.
   struct Light {
     DiscPolynomials polynomials;
-    std::vector<Eigen::MatrixXd> matrices;
+    std::vector<Eigen::MatrixXd> matrices;      ///< W, by order
+    std::vector<Eigen::MatrixXd> square_roots;  ///< S
     DiscNodes nodes;
-    SegmentTable roots;  ///< from nodes to rows: S times the polynomials at the nodes
-    DeviceSegments placed_roots;
-    std::size_t columns;  ///< of S
+    Roots roots;
+    std::optional<Roots> roots_below;  ///< of the degree below, from the nodes of this one; once they are wanted
   };
   using Lights = std::vector<std::optional<Light>>;
 
@@ -80,11 +93,17 @@ class PatchModes {
     PackedRows orders;       ///< integrals of f(L, X) cos(m psi) over psi: column ring * orders + m
   };
 
-  PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work, PatchRule rule,
-             std::shared_ptr<Lights> lights);
+  PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, bool is_loose, WorkDone& work,
+             PatchRule rule, std::shared_ptr<Lights> lights);
 
+  /// Gauss nodes of X per panel and axis.
+  [[nodiscard]] int nodes_of_x(std::size_t rule) const;
+  [[nodiscard]] std::vector<IncidentNode> incident_nodes(std::size_t slab, std::size_t rule) const;
   Light& light(std::size_t degree);
-  /// For each L of a slab the rows f S sqrt(weight) of all lobes.
+  const Roots& roots_below(std::size_t degree);
+  /// Those of a light's polynomials, from nodes of that degree or a higher one.
+  [[nodiscard]] Roots make_roots(const Light& light, const DiscNodes& nodes) const;
+  /// For each L of a slab f sqrt(weight) of all lobes at the nodes.
   /// \param use called when they are there
   template <typename Use>
   void visit(std::size_t slab, ModeLevel level, const Use& use);
@@ -98,9 +117,12 @@ class PatchModes {
   /// Part that the products of delta parts lack at a degree, deltas x deltas: their W is known.
   [[nodiscard]] Eigen::MatrixXd missing_from_deltas(std::size_t slab, ModeLevel level);
   void grow(PackedRows& rows, std::size_t columns) const;
+  /// The products of lobes that have been summed up, and what those of delta parts lack.
+  [[nodiscard]] Eigen::MatrixXd products_of(GramAccumulator& gram, std::size_t slab, ModeLevel level);
 
   const LobeSet& lobes_;
   const Lighting& lighting_;
+  bool is_loose_;
   Device device_;
   PatchRule rule_;  ///< over L
   std::vector<Group> groups_;
@@ -110,7 +132,7 @@ class PatchModes {
   std::vector<std::size_t> lobe_rows_;  ///< packed row of each lobe; those of delta parts come last
   std::size_t delta_pack_ = 0;          ///< the first of delta parts
   PackedRows modes_;                    ///< f_m at the nodes, times sqrt(weight of L)
-  PackedRows rows_;                     ///< f S sqrt(weight of L)
+  PackedRows rows_, rows_below_;        ///< f S sqrt(weight of L), and that of the degree below
   /// From nodes to orders: the host writes one while the device reads the other. Of `along_` one is enough, as nodes of
   /// a group are evaluated before it is written again.
   std::array<SegmentTable, 2> around_;

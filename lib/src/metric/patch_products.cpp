@@ -23,8 +23,10 @@ struct Slab {
   std::size_t products_rule = 1;          ///< a former one, while it is refined
   Eigen::MatrixXd finer;                  ///< at the lowest of these degrees, where it costs a tenth, by the last rule
   Eigen::MatrixXd coarser;                ///< by the rule before
-  double difference = 0;                  ///< of the last two degrees, relative
-  double safety = 1;                      ///< error of the last degree by that difference
+  Eigen::MatrixXd ahead;  ///< at the degree after, from the visit that gave `finer`; empty once used or out of date
+  bool has_more_nodes = false;  ///< that visit took nodes for this degree, more than `finer` has by other rules
+  double difference = 0;        ///< of the last two degrees, relative
+  double safety = 1;            ///< error of the last degree by that difference
 
   [[nodiscard]] std::size_t lowest_degree() const { return level.degree + 1 - products.size(); }
   [[nodiscard]] bool is_stale() const { return products_rule != level.rule; }
@@ -81,8 +83,9 @@ class SlabRefinement {
     }
   };
 
+  [[nodiscard]] std::size_t number(const Slab& slab) const { return static_cast<std::size_t>(&slab - slabs_.data()); }
   [[nodiscard]] Eigen::MatrixXd products(PatchModes& modes, const LobeSet& lobes, const Slab& slab, ModeLevel level) {
-    auto result = modes.products(static_cast<std::size_t>(&slab - slabs_.data()), level);
+    auto result = modes.products(number(slab), level);
     require_finite(result, lobes, lighting_);
     return result;
   }
@@ -191,7 +194,12 @@ void SlabRefinement::begin() {
   reference_ = Eigen::MatrixXd::Zero(n, n);
   for (Slab& slab : slabs_) {
     slab.coarser = products(slab, {0, 0});
-    slab.finer = products(slab, slab.level);
+    // Most slabs stay with this rule and go on to the next degree, whose nodes do for both.
+    auto both = modes_.products_of_two_degrees(number(slab), {slab.level.degree + 1, slab.level.rule});
+    for (const auto& one : both) require_finite(one, lobes_, lighting_);
+    slab.finer = std::move(both[0]);
+    slab.ahead = std::move(both[1]);
+    slab.has_more_nodes = true;
     slab.products.push_back(slab.finer);
     reference_ += slab.finer;
     report_progress(options_, lighting_, 0);
@@ -199,9 +207,16 @@ void SlabRefinement::begin() {
 }
 
 void SlabRefinement::refine_rule(Slab& slab, const std::vector<Eigen::Index>& active) {
-  slab.coarser(active, active) = slab.finer(active, active);
+  Partial partial(*this, active);
+  // With more nodes X for a higher degree a rule may be as fine as the next one, and hide its own error.
+  if (std::exchange(slab.has_more_nodes, false)) {
+    partial.replace(slab.coarser, slab, {slab.lowest_degree(), slab.level.rule});
+  } else {
+    slab.coarser(active, active) = slab.finer(active, active);
+  }
+  slab.ahead.resize(0, 0);
   ++slab.level.rule;
-  Partial(*this, active).replace(slab.finer, slab, {slab.lowest_degree(), slab.level.rule});
+  partial.replace(slab.finer, slab, {slab.lowest_degree(), slab.level.rule});
   if (slab.products.size() > 1) return;
   slab.products.front() = slab.finer;
   slab.products_rule = slab.level.rule;
@@ -224,6 +239,13 @@ void SlabRefinement::refresh(Slab& slab) {
 
 void SlabRefinement::refine_degree(Slab& slab, const std::vector<Eigen::Index>& active) {
   refresh(slab);
+  if (slab.ahead.size() > 0) {
+    slab.products.push_back(std::exchange(slab.ahead, {}));
+    ++slab.level.degree;
+    slab.difference = relative_difference(slab.products.back(), slab.finer, reference_);
+    slab.safety = safety_of(slab.difference, 0);
+    return;
+  }
   Partial partial(*this, active);
   // Products of lobes that are no longer refined keep their levels.
   std::vector<Eigen::MatrixXd> refined{slab.products.front()};
@@ -241,6 +263,7 @@ void SlabRefinement::refine_degree(Slab& slab, const std::vector<Eigen::Index>& 
   if (slab.products.size() <= kLevelsKept) return;
   slab.products.erase(slab.products.begin());
   slab.finer = slab.products.front();
+  slab.has_more_nodes = false;
   partial.replace(slab.coarser, slab, {slab.lowest_degree(), slab.level.rule - 1});
 }
 
@@ -340,9 +363,10 @@ double light_response(std::span<const PatchShare> shares, double distance) {
 void integrate_patch_products(const Device& device, const LobeSet& lobes, const Lighting& lighting,
                               const MetricOptions& options, ProductSums& sums, WorkDone& work) {
   report_progress(options, lighting, 0);
-  PatchModes modes(device, lobes, lighting, work);
+  const double tolerance = formula_tolerance(lighting, options);
+  PatchModes modes(device, lobes, lighting, tolerance, work);
   SlabRefinement refinement(modes, lobes, lighting, options);
-  const double total_difference = refinement.refine(formula_tolerance(lighting, options));
+  const double total_difference = refinement.refine(tolerance);
   for (const Slab& slab : refinement.slabs()) {
     sums.add_lobe_products(slab.products, slab.safety);
     sums.add_lobe_change(slab.coarser, slab.finer, rule_safety(lobes));

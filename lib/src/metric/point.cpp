@@ -3,8 +3,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <span>
-#include <string>
+#include <set>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -16,7 +15,6 @@
 #include "hemisphere/half_difference_rule.hpp"
 #include "hemisphere/opposite_patch_rule.hpp"
 #include "hemisphere/refinement.hpp"
-#include "lobe/core/error.hpp"
 #include "metric/products.hpp"
 
 namespace lobe {
@@ -189,15 +187,6 @@ struct Part {
   Pairs pairs = Pairs::all;
 };
 
-/// By lobe, whether it has an anisotropic edge about the retro direction.
-std::vector<bool> retro_edges(const LobeSet& lobes) {
-  std::vector<bool> found;
-  for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
-    found.resize(found.size() + lobes.batches[b].coefficients.size(), lobes.is_retro_patch[b]);
-  }
-  return found;
-}
-
 /// The rules for a set of lobes: one knows anisotropic edges about one direction only. With edges about both, a second
 /// one takes those about the retro direction and all lobes without any, and a third one the products across.
 std::vector<Part> parts_of(const LobeSet& lobes, double tolerance) {
@@ -206,7 +195,6 @@ std::vector<Part> parts_of(const LobeSet& lobes, double tolerance) {
     parts.push_back({{}, lobes, HalfDifferenceRule(lobes.extent(), tolerance)});
     return parts;
   }
-  const std::vector<bool> has_retro_edge = retro_edges(lobes);
   const auto select = [&](const auto& is_wanted) {
     std::vector<Eigen::Index> numbers;
     for (std::size_t k = 0; k < lobes.lobes(); ++k) {
@@ -226,7 +214,7 @@ std::vector<Part> parts_of(const LobeSet& lobes, double tolerance) {
   const auto add = [&](std::vector<Eigen::Index> numbers, LobeSet part, PairRule rule, Part::Pairs pairs) {
     parts.push_back({std::move(numbers), std::move(part), std::move(rule), pairs});
   };
-  const auto about_mirror = select([&](std::size_t k) { return !has_retro_edge[k]; });
+  const auto about_mirror = select([&](std::size_t k) { return !lobes.has_retro_edge[k]; });
   LobeSet mirror = part_of(about_mirror);
   mirror.retro_patch_edges.clear();
   add(about_mirror, mirror, HalfDifferenceRule(mirror.extent(), tolerance), Part::Pairs::all);
@@ -234,8 +222,13 @@ std::vector<Part> parts_of(const LobeSet& lobes, double tolerance) {
   LobeSet retro = part_of(about_retro);
   retro.patch_edges.clear();
   add(about_retro, retro, HalfDifferenceRule(retro.extent(), tolerance), Part::Pairs::with_retro_edge);
-  const auto with_edges = select([&](std::size_t k) { return has_retro_edge[k] || lobes.has_mirror_edge[k]; });
-  const LobeSet across = part_of(with_edges);
+  const auto with_edges = select([&](std::size_t k) { return lobes.has_retro_edge[k] || lobes.has_mirror_edge[k]; });
+  LobeSet across = part_of(with_edges);
+  std::set<Kink> kinks;
+  for (const std::size_t group : across.group_of_batch) {
+    kinks.insert(lobes.group_limits[group].kinks.begin(), lobes.group_limits[group].kinks.end());
+  }
+  across.kinks.assign(kinks.begin(), kinks.end());
   add(with_edges, across, OppositePatchRule(across.extent()), Part::Pairs::across);
   return parts;
 }
@@ -244,7 +237,7 @@ std::vector<Part> parts_of(const LobeSet& lobes, double tolerance) {
 class JointIntegrator {
  public:
   JointIntegrator(const Device& device, const LobeSet& lobes, const MetricOptions& options, WorkDone& work)
-      : has_retro_edge_(retro_edges(lobes)), lobes_(static_cast<Eigen::Index>(lobes.lobes())) {
+      : has_retro_edge_(lobes.has_retro_edge), lobes_(static_cast<Eigen::Index>(lobes.lobes())) {
     for (Part& part : parts_of(lobes, options.tolerance)) {
       PointIntegrator integrator(device, part.lobes, std::move(part.rule), options, work);
       parts_.push_back({std::move(part.numbers), part.pairs, std::move(integrator)});

@@ -399,10 +399,12 @@ LobeSet LobeSet::selected(std::span<const Eigen::Index> wanted) const {
   for (const Eigen::Index lobe : wanted) some.names.push_back(names[static_cast<std::size_t>(lobe)]);
   auto next = wanted.begin();
   some.has_mirror_edge.clear();
+  some.has_retro_edge.clear();
   for (const Eigen::Index lobe : wanted) {
-    if (static_cast<std::size_t>(lobe) < smooth_lobes()) {
-      some.has_mirror_edge.push_back(has_mirror_edge[static_cast<std::size_t>(lobe)]);
-    }
+    const auto place = static_cast<std::size_t>(lobe);
+    if (place >= smooth_lobes()) break;
+    some.has_mirror_edge.push_back(has_mirror_edge[place]);
+    some.has_retro_edge.push_back(has_retro_edge[place]);
   }
   Eigen::Index first = 0;
   for (LobeBatch& batch : some.batches) {
@@ -459,6 +461,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     column.emplace(&key, set.names.size());
     set.names.push_back(lobe.name);
     set.has_mirror_edge.push_back(lobe.patch_edge.has_value());
+    set.has_retro_edge.push_back(lobe.retro_patch_edge.has_value());
     if (lobe.is_infinite) set.infinite.push_back(lobe.name);
     set.narrowest = std::min(set.narrowest, lobe.width);
     set.narrowest_retro = std::min(set.narrowest_retro, lobe.retro_width);

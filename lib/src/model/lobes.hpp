@@ -44,8 +44,10 @@ struct LobeSet {
   std::vector<PatchEdge> patch_edges;
   std::vector<PatchEdge> retro_patch_edges;
   std::vector<bool> is_retro_patch;  ///< by batch: anisotropic, with its edge about the retro direction
-  /// By lobe with values in sr^-1: anisotropic, with an edge or a norm with kinks about the mirror direction.
+  /// By lobe with values in sr^-1: anisotropic, with an edge, or a norm with kinks, about the mirror direction; the
+  /// same about the retro direction.
   std::vector<bool> has_mirror_edge;
+  std::vector<bool> has_retro_edge;
   bool half_turn = true;                              ///< half a turn about the normal leaves all lobes the same
   bool both_sides = false;                            ///< see LobeExtent
   bool both_orders = false;                           ///< see LobeExtent
@@ -108,7 +110,8 @@ struct LobeSet {
   [[nodiscard]] LobeExtent extent_of_group(std::size_t group) const;
   /// Whether anisotropic lobes, or norms, have edges about the mirror direction and others about the retro direction.
   [[nodiscard]] bool has_opposite_patches() const { return !patch_edges.empty() && !retro_patch_edges.empty(); }
-  /// The lobes of these numbers, rising, with what is known of all; without materials.
+  /// The lobes of these numbers, rising, all delta parts among them; without materials. Limits stay those of the whole
+  /// set.
   [[nodiscard]] LobeSet selected(std::span<const Eigen::Index> wanted) const;
   /// The smallest of all widths.
   [[nodiscard]] double sharpest() const { return std::min(narrowest, narrowest_retro); }
