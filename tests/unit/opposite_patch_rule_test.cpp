@@ -88,7 +88,9 @@ TEST(OppositePatchRule, MeasuresAreasOfPatchesThatDoNotReachTheHorizon) {
   for (const auto& [mirror, retro] : pairs) {
     SCOPED_TRACE(std::to_string(mirror.radius) + " " + std::to_string(retro.radius));
     const OppositePatchRule rule(extent_of(mirror, retro));
-    const auto inside = [&](const Pair& pair) { return are_within(mirror, retro, pair) ? 1.0 : 0.0; };
+    const auto inside = [&mirror = mirror, &retro = retro](const Pair& pair) {
+      return are_within(mirror, retro, pair) ? 1.0 : 0.0;
+    };
     const double expected = area(mirror) * area(retro) / 4;
     const double coarse = integral(rule, 0, inside);
     const double fine = integral(rule, 1, inside);
@@ -110,7 +112,7 @@ TEST(OppositePatchRule, HasTheIntegralsOfRoundPatchesUpToTheHorizon) {
       known.retro_patch_radii = {b};
       known.cos_min = extent.cos_min;
       known.aspect = 1;
-      const auto inside = [&](const Pair& pair) {
+      const auto inside = [a = a, b = b](const Pair& pair) {
         return std::hypot(pair.u_x, pair.u_y) <= a && std::hypot(pair.v_x, pair.v_y) <= b ? 1 - 0.3 * pair.cos_d : 0.0;
       };
       const double expected = integral(HalfDifferenceRule(known), 1, inside);
