@@ -54,6 +54,7 @@ class AlbedoRule {
   [[nodiscard]] std::vector<IncidentNode> incident_nodes(std::size_t slab, int level) const {
     return incident_nodes_of(slab, nodes_per_panel(level));
   }
+  /// The same with a given number of Gauss nodes per panel.
   [[nodiscard]] std::vector<IncidentNode> incident_nodes_of(std::size_t slab, int nodes_per_panel) const;
 
   /// Directions V for one L: the sum over nodes of factor f(L, V) is the albedo a(L). Flushing as in

@@ -190,14 +190,9 @@ void OppositePatchRule::place(std::size_t slab, int level, NodeBlock& block, con
             const double cos_i = std::sqrt(1 - (square - half));
             const double cos_o = std::sqrt(1 - (square + half));
             if (!(cos_i > 0 && cos_o > 0)) continue;  // rounding, at the horizon
-            const double along = cos_i + cos_o;
-            const double tan2_h = u * u / (along * along);
-            const double log_cos_h = -0.5 * std::log1p(tan2_h);
-            const double cos_h = std::exp(log_cos_h);
-            const double fall = 2 * half / along;
-            block.push({cos_i, cos_o, cos_h, along / (2 * cos_h), tan2_h, log_cos_h,
-                        log_mirror_cosine((fall * fall + u * u) / 2), std::sqrt(weight / (turns * orders))},
-                       {u_x / along, u_y / along, in_x, in_y});
+            const TangentNode node = node_of_components({cos_i, in_x, in_y}, {cos_o, u_x - in_x, u_y - in_y},
+                                                        std::sqrt(weight / (turns * orders)));
+            block.push(node.node, node.tangents);
             if (block.full()) flush();
           }
         });
