@@ -120,6 +120,7 @@ ExitCode run_words(const std::vector<std::string>& words) {
     const ExitCode code = invocation.command->execute(session);
     session.end_progress();
     session.warn_of_missed();
+    session.warn_of_memory();
     if (!takes_standard_output(arguments)) {
       write_output(session.output());
     } else if (!arguments.has(option::quiet)) {

@@ -97,7 +97,7 @@ ExitCode execute_solve(Session& session) {
   // Blocks of F, G and X, and both factors of the decomposition.
   constexpr std::uint64_t kCopies = 6;
   const std::uint64_t bytes = value_bytes(operands[0], grid);
-  session.state_memory(tabulated_bytes(operands, grid) + kCopies * bytes, 3 * bytes);
+  session.state_memory(tabulated_bytes(operands, grid) + kCopies * bytes, 3 * bytes, kCopies * bytes);
   const auto tables = tabulated(session, device, operands, grid, tabulation);
   const Solution solution = solve(tables[0], tables[1], options);
   return finish(session, "solve", device, solution.table, output, findings(solution));

@@ -173,7 +173,8 @@ ExitCode execute_spectrum(Session& session) {
   const auto grid = common_grid(session, device, operand, TableUse::decomposition);
 
   options.progress = session.progress();
-  session.state_memory(tabulated_bytes(operand, grid) + spectrum_bytes(operand.front().shape_on(grid)));
+  const std::uint64_t block_bytes = spectrum_bytes(operand.front().shape_on(grid));
+  session.state_memory(tabulated_bytes(operand, grid) + block_bytes, 0, block_bytes);
   const BrdfTable table = tabulated(session, device, operand.front(), grid, tabulation);
   const Spectrum values = spectrum(device, table, options);
   session.end_progress();

@@ -80,7 +80,9 @@ ExitCode execute_square_root(Session& session) {
 
   options.progress = session.progress();
   const BrdfTable shape = operand.front().shape_on(grid);
-  session.state_memory(tabulated_bytes(operand, grid) + spectrum_bytes(shape), 2 * value_bytes(operand.front(), grid));
+  const std::uint64_t block_bytes = spectrum_bytes(shape);
+  session.state_memory(tabulated_bytes(operand, grid) + block_bytes, 2 * value_bytes(operand.front(), grid),
+                       block_bytes);
   const BrdfTable table = tabulated(session, device, operand.front(), grid, tabulation);
   const SquareRoot root = square_root(device, table, options);
   return finish(session, "square-root", device, root.table, output, findings(root));

@@ -73,6 +73,10 @@ std::span<const Option> common_options() {
              .help = "arithmetic of the models: double (default) or single",
              .choices = {"double", "single"}},
       Option{
+          .handle = option::memory,
+          .value = "SIZE",
+          .help = "bound the memory of the process, for example 2G: tables lie in files of $TMPDIR, else of /var/tmp"},
+      Option{
           .handle = option::quiet, .letter = 'q', .help = "print only results and errors, no progress and no warnings"},
       Option{.handle = option::no_progress,
              .help = "show no progress line; it only appears if errors go to a terminal"},

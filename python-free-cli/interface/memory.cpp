@@ -5,8 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <string_view>
+#include <system_error>
+
+#include "lobe/core/error.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -52,6 +58,27 @@ std::optional<std::uint64_t> bytes_within_limit() {
   if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
   const std::uint64_t taken = proc_bytes("/proc/self/status", "VmSize:");
   return limit.rlim_cur > taken ? limit.rlim_cur - taken : 0;
+}
+
+std::filesystem::path scratch_folder() {
+  const char* given = std::getenv("TMPDIR");
+  return given != nullptr && *given != '\0' ? given : "/var/tmp";
+}
+
+std::uint64_t parse_bytes(const std::string& text) {
+  constexpr std::string_view kUnits = "KMGT";
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, code] = std::from_chars(text.data(), end, value);
+  const std::string_view unit(rest, end);
+  const std::size_t power = unit.empty() ? std::string_view::npos : kUnits.find(unit.front());
+  const bool is_unit = power != std::string_view::npos && (unit.size() == 1 || unit.substr(1) == "iB");
+  const double bytes = is_unit ? std::ldexp(value, 10 * (static_cast<int>(power) + 1)) : 0;
+  constexpr double kMost = 9e18;  // what counts of bytes hold
+  if (code != std::errc() || !(bytes >= 1 && bytes < kMost)) {
+    throw ArgumentError("'" + text + "' is no size of memory; expected a number with K, M, G or T, such as 2G");
+  }
+  return static_cast<std::uint64_t>(bytes);
 }
 
 std::string bytes_text(std::uint64_t bytes) {

@@ -25,6 +25,7 @@ inline constexpr Flag help{"help"};
 inline constexpr Flag json{"json"};
 inline constexpr Texts lighting{"lighting"};
 inline constexpr Text luminance{"luminance"};
+inline constexpr Text memory{"memory"};
 inline constexpr Flag no_checkpoint{"no-checkpoint"};
 inline constexpr Flag no_compress{"no-compress"};
 inline constexpr Flag no_progress{"no-progress"};

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "core/shell.hpp"
@@ -38,6 +40,18 @@ constexpr std::uint64_t kMuchMemory = std::uint64_t{1} << 30;
 constexpr std::uint64_t kKernelMemory = std::uint64_t{16} << 20;  // kernels and their runtime, once they run
 constexpr std::uint64_t kFileMemory = std::uint64_t{32} << 20;    // parts of a table on their way into a file
 
+/// \return null without --memory
+std::unique_ptr<MemoryBound> make_bound(const Arguments& arguments) {
+  if (!arguments.has(option::memory)) return nullptr;
+  const std::uint64_t bytes = parse_bytes(arguments.text(option::memory));
+  try {
+    return std::make_unique<MemoryBound>(scratch_folder(), bytes);
+  } catch (const IoError& error) {
+    throw IoError(std::string(error.problem()) + "; set TMPDIR to a folder on a disk with room for the tables",
+                  error.fields());
+  }
+}
+
 }  // namespace
 
 std::string_view to_string(Precision precision) {
@@ -56,6 +70,7 @@ Session::Session(const Arguments& arguments, std::vector<std::string> words)
       words_(std::move(words)),
       command_line_(command_line_of(words_)),
       is_strict_(arguments.is_given(option::strict)),
+      bound_(make_bound(arguments)),
       progress_(can_redraw(Stream::error) && !arguments.has(option::quiet) && !arguments.has(option::no_progress) &&
                 !arguments.is_given(option::json)) {}
 
@@ -174,18 +189,17 @@ void Session::warn_of_missed() {
   for (const auto& missed : missed_) remark("lobe: " + to_string(missed) + "\n");
 }
 
-void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes) {
+void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes, std::uint64_t other_bytes) {
+  const std::uint64_t table_bytes = work_bytes - std::min(work_bytes, other_bytes);
   if (arguments_.is_given(option::output)) work_bytes = std::max(work_bytes, saved_bytes + kFileMemory);
   work_bytes_ = kKernelMemory + work_bytes;
   predicted_bytes_ = resident_bytes() + kKernelMemory + work_bytes;
+  require_addresses();
+  if (bound_) return state_bounded_memory(table_bytes, other_bytes);
   const MachineMemory machine = machine_memory();
   if (machine.total_bytes > 0 && predicted_bytes_ > machine.total_bytes) {
     throw NumericError("this takes about " + bytes_text(predicted_bytes_) + " of memory, more than the " +
                        bytes_text(machine.total_bytes) + " of this machine; use a smaller grid");
-  }
-  if (const auto left = bytes_within_limit(); left && work_bytes_ > *left) {
-    throw NumericError("this takes about " + bytes_text(work_bytes_) + " of memory, more than the " +
-                       bytes_text(*left) + " that the limit on this process (ulimit -v) leaves; use a smaller grid");
   }
   const std::string statement = "peak memory will be about " + bytes_text(predicted_bytes_);
   if (machine.available_bytes > 0 && predicted_bytes_ > machine.available_bytes) {
@@ -193,6 +207,39 @@ void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes) 
   } else if (predicted_bytes_ >= kMuchMemory || is_verbose()) {
     state(statement);
   }
+}
+
+void Session::require_addresses() const {
+  const auto left = bytes_within_limit();
+  if (!left || work_bytes_ <= *left) return;
+  throw NumericError("this takes about " + bytes_text(work_bytes_) + " of memory, more than the " + bytes_text(*left) +
+                     " that the limit on this process (ulimit -v) leaves; use a smaller grid");
+}
+
+void Session::state_bounded_memory(std::uint64_t table_bytes, std::uint64_t other_bytes) {
+  least_bytes_ = std::min(least_bytes_, resident_bytes());
+  const std::uint64_t needed = least_bytes_ + kKernelMemory + kFileMemory + other_bytes;
+  if (bound_->bytes() < needed) {
+    throw NumericError("--memory " + arguments_.text(option::memory) + " is too small: this takes about " +
+                       bytes_text(needed) + " beside its tables; expected more");
+  }
+  const std::string folder = bound_->folder().string();
+  std::error_code code;
+  const std::uint64_t free = std::filesystem::space(bound_->folder(), code).available;
+  if (!code && table_bytes > free) {
+    throw NumericError("this takes about " + bytes_text(table_bytes) + " for tables, more than the " +
+                       bytes_text(free) + " that are free in " + folder + "; set TMPDIR to a folder on a larger disk");
+  }
+  if (table_bytes < kMuchMemory && !is_verbose()) return;
+  state("tables will take about " + bytes_text(table_bytes) + " in " + folder + ", memory is meant to stay below " +
+        bytes_text(bound_->bytes()));
+}
+
+void Session::warn_of_memory() {
+  const std::uint64_t peak = peak_resident_bytes();
+  if (!bound_ || peak <= bound_->bytes()) return;
+  warn("memory reached " + bytes_text(peak) + ", more than --memory " + arguments_.text(option::memory) +
+       ": what is no table has to fit, and tables may exceed it for a moment");
 }
 
 Json Session::memory_json() const {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "interface/progress.hpp"
 #include "interface/report.hpp"
 #include "lobe/core/estimate.hpp"
+#include "lobe/core/memory_bound.hpp"
 #include "lobe/core/output_lock.hpp"
 #include "lobe/core/progress.hpp"
 #include "lobe/core/tolerance.hpp"
@@ -95,8 +98,9 @@ class Session {
   /// States how much memory the work to come will take at its peak: always from 1 GiB on, else with --verbose.
   /// \param work_bytes what it takes beside what is occupied now, with the device open
   /// \param saved_bytes what of it is still occupied while --output is written; that takes some more
-  /// \throws NumericError when the machine has not as much.
-  void state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes = 0);
+  /// \param other_bytes what of it is no table, and stays in memory with --memory
+  /// \throws NumericError if the machine has too little memory or, with --memory, the disk too little room.
+  void state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes = 0, std::uint64_t other_bytes = 0);
   /// {"predicted_bytes"}: the last statement, less what the process had before, which differs from run to run. What was
   /// taken differs from run to run, and stands in report_stages().
   [[nodiscard]] Json memory_json() const;
@@ -104,10 +108,15 @@ class Session {
   /// Shows progress on a terminal (unless --quiet, --no-progress or --json) and stops the work after Ctrl-C.
   [[nodiscard]] ProgressCallback progress();
   void end_progress() { progress_.erase(); }
+  /// Warns where the process took more memory than --memory.
+  void warn_of_memory();
   /// With --verbose a table on standard error: where the time went, and the peak of memory.
   void report_stages();
 
  private:
+  void require_addresses() const;
+  void state_bounded_memory(std::uint64_t table_bytes, std::uint64_t other_bytes);
+
   const Arguments& arguments_;
   Device device_;
   std::vector<std::string> words_;
@@ -117,7 +126,9 @@ class Session {
   std::vector<MissedTolerance> missed_;
   std::vector<std::string> coarse_;  ///< grids with what they do not resolve
   std::uint64_t predicted_bytes_ = 0;
-  std::uint64_t work_bytes_ = 0;  ///< memory in the last statement
+  std::uint64_t work_bytes_ = 0;                                           ///< memory in the last statement
+  std::unique_ptr<MemoryBound> bound_;                                     ///< of --memory
+  std::uint64_t least_bytes_ = std::numeric_limits<std::uint64_t>::max();  ///< resident before work that was stated
   ProgressLine progress_;
 };
 

@@ -162,6 +162,57 @@ TEST_F(Tables, TwoMirrorsReflectBack) {
   EXPECT_EQ(answer["delta"], Json::parse(R"({"rrim": {"min": 0.25, "max": 0.25}})"));
 }
 
+/// A folder on a disk for tables in files; the usual one of tests may lie in memory.
+const Surroundings kOnDisk{.environment = {{"TMPDIR", "/var/tmp"}}};
+
+TEST_F(Tables, BoundedMemoryChangesNoBit) {
+  // Beyond a mebibyte, from which on tables lie in files.
+  const auto compose = [&](const std::string& output, Words more) {
+    Words words{"compose", "ward_anisotropic:m_x=0.3,m_y=0.6", "lambert+phong:n=5", "--grid", "gauss:16x32", "-v", "-o",
+                output};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto outcome = run(words, kOnDisk);
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    return outcome.error;
+  };
+  EXPECT_THAT(compose("plain.h5", {}), HasSubstr("peak memory will be about"));
+  EXPECT_THAT(compose("bounded.h5", {"--memory", "8G"}),
+              HasSubstr(" in /var/tmp, memory is meant to stay below 8 GiB\n"));
+  const BrdfTable a = load_table(file("plain.h5"));
+  const BrdfTable b = load_table(file("bounded.h5"));
+  EXPECT_EQ(a.values.size(), 512U * 512U);
+  EXPECT_EQ(a.values, b.values);
+  EXPECT_EQ(a.error, b.error);
+}
+
+TEST_F(Tables, BoundedMemoryRefusesWhatItCannotKeep) {
+  const auto expect_refused = [&](const Words& words, const std::string& size, cli::ExitCode code,
+                                  const std::string& message, const std::string& folder = "/var/tmp") {
+    Words all = words;
+    all.insert(all.end(), {"--memory", size});
+    const auto outcome = run(all, {.environment = {{"TMPDIR", folder}}});
+    EXPECT_EQ(outcome.status, static_cast<int>(code)) << size;
+    EXPECT_EQ(std::ranges::count(outcome.error, '\n'), 1) << outcome.error;
+    EXPECT_THAT(outcome.error, HasSubstr(message)) << size;
+    EXPECT_FALSE(fs::exists(file("a.h5"))) << size;
+  };
+  const Words scale{"scale", "phong:n=5", "0.5", "--grid", kSmallTable, "-o", "a.h5"};
+  expect_refused(scale, "1M", ExitCode::numeric, "--memory 1M is too small: this takes about ");
+  for (const std::string size : {"much", "2X", "2", "-1G", "0G", "2Gb", "nanG", "1e30T"}) {
+    expect_refused(scale, size, ExitCode::usage,
+                   "'" + size + "' is no size of memory; expected a number with K, M, G or T");
+  }
+  // Terabytes of tables, and of blocks, which are no tables.
+  expect_refused({"scale", "ward_anisotropic:m_x=0.3,m_y=0.6", "0.5", "--grid", "gauss:1024x2048", "-o", "a.h5"}, "1G",
+                 ExitCode::numeric, "that are free in /var/tmp; set TMPDIR to a folder on a larger disk");
+  expect_refused({"spectrum", "phong:n=5", "--grid", "gauss:1024x2048"}, "1G", ExitCode::numeric,
+                 "--memory 1G is too small: this takes about ");
+  expect_refused(scale, "1G", ExitCode::file, "; set TMPDIR to a folder on a disk", file("absent").string());
+  if (fs::exists("/dev/shm")) {
+    expect_refused(scale, "1G", ExitCode::file, "which lies in memory (tmpfs); set TMPDIR to a folder", "/dev/shm");
+  }
+}
+
 TEST_F(Tables, SelfCompositionOnceIsCompositionWithItself) {
   make({"self-compose", "phong:n=5", "--grid", kSmallTable, "-o", "once.h5"});
   make({"compose", "phong:n=5", "phong:n=5", "--grid", kSmallTable, "-o", "pair.h5"});

@@ -9,6 +9,7 @@
 #include "lobe/core/estimate.hpp"      // value and error
 #include "lobe/core/file_set.hpp"      // files that appear together
 #include "lobe/core/files.hpp"         // files that are complete or absent
+#include "lobe/core/memory_bound.hpp"  // tables in files
 #include "lobe/core/output_lock.hpp"   // one process per output
 #include "lobe/core/progress.hpp"      // progress and cancelling
 #include "lobe/core/tolerance.hpp"     // errors above what was asked for

@@ -11,6 +11,7 @@
 
 #include "lobe/core/directions.hpp"
 #include "lobe/core/estimate.hpp"
+#include "lobe/core/memory_bound.hpp"
 #include "lobe/core/progress.hpp"
 #include "lobe/device/device.hpp"
 #include "lobe/hemisphere/grid.hpp"
@@ -19,20 +20,20 @@
 namespace [[gnu::visibility("default")]] lobe {
 
 /// Allocator on cache lines, so that devices that share the host's memory can use tables in place. It leaves numbers
-/// uninitialised: a table may have gigabytes that are written next anyway.
+/// uninitialised: a table may have gigabytes that are written next anyway. While a MemoryBound
+/// lives, large tables lie in files.
 template <typename T>
 struct TableAllocator {
-  using value_type = T;                               ///< type of the elements
-  static constexpr std::align_val_t kAlignment{128};  ///< alignment in bytes
+  using value_type = T;  ///< type of the elements
 
   TableAllocator() = default;
   template <typename U>
   /// Converts from an allocator of another type; all allocators are the same.
   explicit TableAllocator(const TableAllocator<U>&) {}
   /// Allocates memory for `count` values, uninitialised.
-  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), kAlignment)); }
+  T* allocate(std::size_t count) { return static_cast<T*>(allocate_table_memory(count * sizeof(T))); }
   /// Releases memory.
-  void deallocate(T* pointer, std::size_t) { ::operator delete(pointer, kAlignment); }
+  void deallocate(T* pointer, std::size_t count) { release_table_memory(pointer, count * sizeof(T)); }
   template <typename U>
   /// Default-initialises a value, which leaves numbers as they are.
   void construct(U* pointer) {
