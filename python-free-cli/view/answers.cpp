@@ -517,6 +517,15 @@ std::vector<Estimate> luminances(const Reflectance& reflectance, const std::vect
   return list;
 }
 
+/// Luminances that are drawn without their errors.
+Json values_json(const Device& device, const Reflectance& reflectance, const std::vector<Directions>& pairs) {
+  Json values = Json::array();
+  for (const Estimate& one : luminances(reflectance, estimates(evaluate(device, reflectance, pairs)), pairs.size())) {
+    values.push_back(to_json(one.value));
+  }
+  return {{"values", std::move(values)}};
+}
+
 Json plane_json(const Device& device, const Reflectance& reflectance, const Json& asked) {
   const double theta_in = theta_of(asked, "theta_in");
   const auto angles = plane_angles(theta_in);
@@ -590,8 +599,7 @@ Json answer_slice(Workshop& workshop, const Json& asked) {
       pairs.push_back(half_difference_pair(along * along * kRight, across * kRight));
     }
   }
-  Json json =
-      list_json(luminances(reflectance, estimates(evaluate(workshop.device, reflectance, pairs)), pairs.size()));
+  Json json = values_json(workshop.device, reflectance, pairs);
   json["nodes"] = kNodes;
   return json;
 }
@@ -615,8 +623,7 @@ Json answer_lobe(Workshop& workshop, const Json& asked) {
           {.theta_in = theta_in, .theta_out = theta * kDegree, .delta_phi = delta * kDegree, .phi_in = phi_in});
     }
   }
-  Json json =
-      list_json(luminances(reflectance, estimates(evaluate(workshop.device, reflectance, pairs)), pairs.size()));
+  Json json = values_json(workshop.device, reflectance, pairs);
   json["theta_out"] = rings;
   json["delta_phi"] = sectors;
   return json;
@@ -836,8 +843,7 @@ Json offer_json(const Offer& offer) {
 Json answer(Workshop& workshop, const QuestionKind& kind, const Json& asked) {
   if (!kind.is_kept) return kind.answer(workshop, asked);
   Json question = asked;
-  question.erase("slot");
-  question.erase("number");
+  for (const char* others : {"kind", "slot", "number"}) question.erase(others);
   return workshop.kept.get(std::string(kind.name) + " " + question.dump(),
                            [&] { return kind.answer(workshop, asked); });
 }

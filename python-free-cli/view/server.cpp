@@ -10,10 +10,15 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "interface/failure.hpp"
 #include "lobe/core/error.hpp"
@@ -28,6 +33,7 @@ namespace {
 constexpr const char* kHost = "127.0.0.1";
 constexpr std::size_t kLargestFile = std::size_t{256} << 20;
 constexpr std::size_t kLargestQuestion = std::size_t{1} << 20;
+constexpr std::size_t kMostQuestions = 100;  // of a page at once; it sends more in parts
 /// Clients that are served at once. One that sends nothing holds its place for kPatienceSeconds.
 constexpr std::size_t kClients = 64;
 constexpr time_t kPatienceSeconds = 3;
@@ -77,6 +83,30 @@ const std::array<PageFile, 12>& page_files() {
   return kFiles;
 }
 
+/// \return null where there is none of that name
+const QuestionKind* kind_named(std::string_view name) {
+  const auto kinds = question_kinds();
+  const auto found = std::ranges::find(kinds, name, &QuestionKind::name);
+  return found == kinds.end() ? nullptr : &*found;
+}
+
+bool is_about_others(std::string_view name) {
+  return name == "progress" || name == "forget";
+}
+
+Json no_question(const std::string& name) {
+  return {{"error", "there is no question '" + name + "'"}};
+}
+
+/// \throws Json::exception, ArgumentError for what is nested so deep that who copies or prints it would run out of stack
+Json parse_question(const std::string& body) {
+  constexpr int kDeepest = 16;
+  return Json::parse(body, [](int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
+    if (depth > kDeepest) throw ArgumentError("a question is nested too deep; expected what the page would send");
+    return true;
+  });
+}
+
 void say(httplib::Response& response, int status, const Json& json) {
   response.status = status;
   response.set_content(json.dump(-1, ' ', false, Json::error_handler_t::replace), "application/json");
@@ -103,8 +133,14 @@ struct ViewServer::Content {
 
   void set_up();
   [[nodiscard]] bool is_admitted(const httplib::Request& request) const;
+  [[nodiscard]] static bool is_question(const httplib::Request& request, httplib::Response& response);
+  [[nodiscard]] std::optional<Json> answer_at_once(std::string_view name, const Json& asked);
+  [[nodiscard]] Turns::Asked in_turn(const QuestionKind& kind, const Json& asked);
   void answer(const httplib::Request& request, httplib::Response& response);
+  void answer_all(const httplib::Request& request, httplib::Response& response);
+  [[nodiscard]] bool write_answers(const Json& asked, httplib::DataSink& sink);
   void take_file(const httplib::Request& request, httplib::Response& response);
+  [[nodiscard]] std::pair<int, Json> refusal(const std::exception_ptr& failure) const;
   void respond(httplib::Response& response, const std::function<Json()>& make) const;
 };
 
@@ -123,56 +159,142 @@ bool ViewServer::Content::is_admitted(const httplib::Request& request) const {
   return (site.empty() || site == "same-origin") && (origin.empty() || origin == "http://" + host);
 }
 
-void ViewServer::Content::respond(httplib::Response& response, const std::function<Json()>& make) const {
+/// Why there is no answer, as an answer and its status.
+std::pair<int, Json> ViewServer::Content::refusal(const std::exception_ptr& failure) const {
   const auto line = [&] { return shown.without_folder(describe_current_exception(nullptr).line); };
   try {
-    say(response, 200, make());
+    std::rethrow_exception(failure);
   } catch (const Cancelled&) {
-    say(response, kStale, {{"stale", true}});
+    return {kStale, {{"stale", true}}};
   } catch (const DeviceError&) {
-    say(response, kBroken, {{"error", line()}});
+    return {kBroken, {{"error", line()}}};
   } catch (const Error&) {
-    say(response, kRefused, {{"error", line()}});
+    return {kRefused, {{"error", line()}}};
   } catch (const Json::exception&) {
-    say(response, kWrong, {{"error", "the question is no JSON that the page would send"}});
+    return {kWrong, {{"error", "the question is no JSON that the page would send"}}};
   } catch (...) {
-    say(response, kBroken, {{"error", line()}});
+    return {kBroken, {{"error", line()}}};
   }
+}
+
+void ViewServer::Content::respond(httplib::Response& response, const std::function<Json()>& make) const {
+  try {
+    say(response, 200, make());
+  } catch (...) {
+    const auto [status, json] = refusal(std::current_exception());
+    say(response, status, json);
+  }
+}
+
+/// \return whether it is one; else the response says so
+bool ViewServer::Content::is_question(const httplib::Request& request, httplib::Response& response) {
+  if (request.body.size() <= kLargestQuestion && request.get_header_value("Content-Type") == "application/json") {
+    return true;
+  }
+  say(response, kWrong, {{"error", "a question is JSON of at most 1 MiB"}});
+  return false;
+}
+
+/// What is about other questions waits for nobody's turn.
+std::optional<Json> ViewServer::Content::answer_at_once(std::string_view name, const Json& asked) {
+  if (name == "progress") {
+    return progress.of(asked.value("of", std::string()), asked.value("of_number", std::uint64_t{0}));
+  }
+  if (name == "forget") {
+    turns.forget({asked.value("slot", ""), asked.value("number", std::uint64_t{0})});
+    return Json::object();
+  }
+  return std::nullopt;
+}
+
+/// A question with all that answers it in its turn.
+/// \param asked lives until it is answered
+Turns::Asked ViewServer::Content::in_turn(const QuestionKind& kind, const Json& asked) {
+  Turns::Question question{asked.value("slot", ""), asked.value("number", std::uint64_t{0}), kind.patience};
+  return {question, [this, &kind, &asked, question](const std::function<bool()>& is_wanted) {
+            const ProgressBoard::Place place(progress, question.slot, question.number);
+            const auto tell = [&](std::string_view stage, double share) {
+              place.tell(stage, share);
+              return is_wanted();
+            };
+            const auto tell_best = [&](Json best) { place.tell_best(std::move(best)); };
+            Workshop workshop{device, shown, scenes, kept, first_shown, tell, tell_best};
+            return cli::answer(workshop, kind, asked);
+          }};
 }
 
 void ViewServer::Content::answer(const httplib::Request& request, httplib::Response& response) {
   const std::string name = request.matches[1];
-  const auto kinds = question_kinds();
-  const auto kind = std::ranges::find(kinds, name, &QuestionKind::name);
-  const bool is_about_others = name == "progress" || name == "forget";
-  if (kind == kinds.end() && !is_about_others)
-    return say(response, kUnknown, {{"error", "there is no question '" + name + "'"}});
-  if (request.body.size() > kLargestQuestion || request.get_header_value("Content-Type") != "application/json") {
-    return say(response, kWrong, {{"error", "a question is JSON of at most 1 MiB"}});
-  }
+  const QuestionKind* const kind = kind_named(name);
+  if (kind == nullptr && !is_about_others(name)) return say(response, kUnknown, no_question(name));
+  if (!is_question(request, response)) return;
   respond(response, [&] {
-    const Json asked = Json::parse(request.body);
-    Turns::Question question{asked.value("slot", ""), asked.value("number", std::uint64_t{0})};
-    // What is about other questions waits for nobody's turn.
-    if (name == "progress") {
-      return progress.of(asked.value("of", std::string()), asked.value("of_number", std::uint64_t{0}));
-    }
-    if (name == "forget") {
-      turns.forget(question);
-      return Json::object();
-    }
-    question.patience = kind->patience;
-    return turns.answer(question, [&](const std::function<bool()>& is_wanted) {
-      const ProgressBoard::Place place(progress, question.slot, question.number);
-      const auto tell = [&](std::string_view stage, double share) {
-        place.tell(stage, share);
-        return is_wanted();
-      };
-      const auto tell_best = [&](Json best) { place.tell_best(std::move(best)); };
-      Workshop workshop{device, shown, scenes, kept, first_shown, tell, tell_best};
-      return cli::answer(workshop, *kind, asked);
-    });
+    const Json asked = parse_question(request.body);
+    if (const auto answered = answer_at_once(name, asked)) return *answered;
+    return turns.answer(in_turn(*kind, asked));
   });
+}
+
+/// Answers questions that a page asks at once, {"questions": [{"kind", ...}]}: a line {"at", "answer"} for each as soon
+/// as it is known. Browsers ask a server no more than six things at a time otherwise.
+void ViewServer::Content::answer_all(const httplib::Request& request, httplib::Response& response) {
+  if (!is_question(request, response)) return;
+  const auto asked = std::make_shared<Json>();
+  try {
+    Json list = parse_question(request.body);
+    *asked = std::move(list.at("questions"));
+  } catch (...) {
+    const auto [status, json] = refusal(std::current_exception());
+    return say(response, status, json);
+  }
+  if (!asked->is_array() || asked->size() > kMostQuestions) {
+    return say(response, kWrong,
+               {{"error", fmt::format("'questions' is no list that the page would send; expected one of at most {}",
+                                      kMostQuestions)}});
+  }
+  response.set_chunked_content_provider("application/x-ndjson", [this, asked](std::size_t, httplib::DataSink& sink) {
+    // Nobody catches what leaves this.
+    try {
+      return write_answers(*asked, sink);
+    } catch (...) {
+      return false;
+    }
+  });
+}
+
+/// \return whether the client has heard all of them
+bool ViewServer::Content::write_answers(const Json& asked, httplib::DataSink& sink) {
+  const auto say_line = [&](std::size_t at, const Json& answer) {
+    const Json line{{"at", at}, {"answer", answer}};
+    const std::string text = line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return sink.write(text.data(), text.size());
+  };
+  std::vector<Turns::Asked> all;
+  std::vector<std::size_t> places;
+  for (std::size_t at = 0; at < asked.size(); ++at) {
+    Json answered;
+    try {
+      const std::string name = asked.at(at).at("kind");
+      const QuestionKind* const kind = kind_named(name);
+      if (kind != nullptr) {
+        all.push_back(in_turn(*kind, asked.at(at)));
+        places.push_back(at);
+        continue;
+      }
+      const auto others = answer_at_once(name, asked.at(at));
+      answered = others ? *others : no_question(name);
+    } catch (...) {
+      answered = refusal(std::current_exception()).second;
+    }
+    if (!say_line(at, answered)) return false;
+  }
+  bool is_heard = true;
+  turns.answer_all(all, [&](std::size_t which, const Json& answer, const std::exception_ptr& failure) {
+    is_heard = say_line(places[which], failure ? refusal(failure).second : answer);
+    return is_heard;
+  });
+  if (is_heard) sink.done();
+  return is_heard;
 }
 
 void ViewServer::Content::take_file(const httplib::Request& request, httplib::Response& response) {
@@ -180,9 +302,9 @@ void ViewServer::Content::take_file(const httplib::Request& request, httplib::Re
     return say(response, kWrong, {{"error", "a file is sent as it is, application/octet-stream"}});
   }
   respond(response, [&] {
-    return turns.answer({}, [&](const std::function<bool()>&) {
-      return offer_json(shown.drop(request.get_param_value("name"), request.body));
-    });
+    return turns.answer({{}, [&](const std::function<bool()>&) {
+                           return offer_json(shown.drop(request.get_param_value("name"), request.body));
+                         }});
   });
 }
 
@@ -218,6 +340,7 @@ void ViewServer::Content::set_up() {
     });
   }
   server.Post("/[0-9a-f]+/ask/([a-z]+)", [this](const auto& request, auto& response) { answer(request, response); });
+  server.Post("/[0-9a-f]+/asks", [this](const auto& request, auto& response) { answer_all(request, response); });
   server.Post("/[0-9a-f]+/file", [this](const auto& request, auto& response) { take_file(request, response); });
 }
 

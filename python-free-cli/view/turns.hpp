@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -9,6 +10,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "interface/report.hpp"
 
@@ -27,9 +29,22 @@ class Turns {
   /// Makes an answer, and asks now and then whether somebody still waits for it.
   using Work = std::function<Json(const std::function<bool()>& is_wanted)>;
 
+  /// A question and what makes its answer.
+  struct Asked {
+    Question question;
+    Work work;
+  };
+  /// Takes the answer to one of several questions, or why there is none: Cancelled for a question that is stale, and
+  /// after stop(); whatever its work throws.
+  /// \return whether the others are still waited for
+  using Tell = std::function<bool(std::size_t which, Json answer, const std::exception_ptr& failure)>;
+
+  /// Waits for the turns of several questions, and tells each answer as soon as it is made.
+  void answer_all(const std::vector<Asked>& all, const Tell& tell);
+
   /// Waits for its turn and for the answer.
   /// \throws Cancelled for a question that is stale, and after stop(); whatever the work throws
-  [[nodiscard]] Json answer(const Question& question, const Work& work);
+  [[nodiscard]] Json answer(const Asked& asked);
 
   /// Nobody waits for older questions of a slot any more.
   void forget(const Question& question);
@@ -43,12 +58,14 @@ class Turns {
  private:
   enum class Stage { waiting, answering, done };
   struct Task {
-    const Question& question;
-    const Work& work;
+    const Asked& asked;
+    bool is_given_up = false;  ///< who asked has gone
     Stage stage = Stage::waiting;
     Json answer = {};
     std::exception_ptr failure = {};
   };
+
+  class Tasks;
 
   [[nodiscard]] bool is_wanted(const Question& question) const;
   void make_newest(const Question& question);

@@ -244,9 +244,24 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
 
   // A slider changes the material, and everything that depends on it.
   const std::string before = browser.text("#checks");
+  (void)browser.evaluate(
+      "window.sent = []; const send = window.fetch;"
+      "window.fetch = (url, options) => { window.sent.push(...JSON.parse(options.body).questions); return send(url, "
+      "options); };"
+      "window.drawings = 0; const draw = window.drawSlices; window.drawSlices = () => { window.drawings += 1; draw(); "
+      "};");
   browser.set("#p-0-0", "0.9");
   ASSERT_TRUE(browser.settles());
   EXPECT_THAT(browser.text("#cards .name"), AllOf(StartsWith("ggx:alpha="), Not(EndsWith("=0.3"))));
+  // What was answered of the other material is not asked again, and both are drawn at once.
+  EXPECT_EQ(browser.evaluate("return window.sent.filter((one) => one.material === 'ward:m=0.2').length"), Json(0));
+  EXPECT_GT(browser.evaluate("return window.sent.filter((one) => one.kind === 'slice').length"), Json(0));
+  EXPECT_EQ(browser.evaluate("return window.drawings"), Json(1));
+  // A drawing that fails leaves the others, and the page settles.
+  (void)browser.evaluate(
+      "window.drawn = 0; drawNext(() => { throw new Error('planted'); }); drawNext(() => { drawn += 1; });");
+  ASSERT_TRUE(browser.settles("window.drawn === 1"));
+  EXPECT_THAT(browser.log().dump(), HasSubstr("planted"));
   EXPECT_NE(browser.text("#checks"), before);
   const auto edited = browser.evaluate("return document.querySelector('#specification').value").get<std::string>();
   EXPECT_THAT(edited, StartsWith("ggx:alpha=0."));

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <thread>
@@ -62,6 +63,13 @@ class RawClient {
   }
 
   [[nodiscard]] bool is_connected() const { return is_connected_; }
+  /// Reads up to a text. \return whether it comes
+  [[nodiscard]] bool reads(const std::string& text) const {
+    std::string all;
+    char letter = 0;
+    while (!all.ends_with(text) && ::recv(socket_, &letter, 1, 0) == 1) all += letter;
+    return all.ends_with(text);
+  }
   /// "HTTP/1.1 403 Forbidden"
   [[nodiscard]] std::string status_line() const {
     std::string line;
@@ -401,6 +409,122 @@ TEST_F(View, AnswersBadQuestionsInOneLine) {
   const auto form = client.Post("/" + view.token() + "/ask/material", "{}", "text/plain");
   ASSERT_TRUE(form);
   EXPECT_EQ(form->status, 400);
+}
+
+/// Lines of the answer to questions that are asked at once.
+std::vector<Json> lines_of(const std::string& text) {
+  std::vector<Json> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(Json::parse(line));
+  return lines;
+}
+
+TEST_F(View, AnswersQuestionsThatAreAskedAtOnceALineEach) {
+  const ViewProcess view({"lambert"}, here());
+  auto client = view.client();
+  const Json plane{{"material", "phong:n=5"}, {"theta_in", 30}};
+  Json first = plane;
+  first["kind"] = "plane";
+  const Json questions{{"questions",
+                        {{{"kind", "distances"}, {"materials", {"lambert", "phong:n=5"}}, {"lighting", "point"}},
+                         first,
+                         {{"kind", "material"}, {"material", "phong:m=5"}},
+                         {{"kind", "plane"}, {"material", "lambert"}, {"theta_in", "much"}},
+                         {{"kind", "forget"}, {"slot", "another"}, {"number", 1}},
+                         {{"kind", "progress"}, {"of", "another"}, {"of_number", "many"}}}}};
+
+  const auto response = client.Post("/" + view.token() + "/asks", questions.dump(), "application/json");
+
+  ASSERT_TRUE(response);
+  EXPECT_EQ(response->status, 200);
+  EXPECT_TRUE(response->body.ends_with('\n'));
+  std::map<int, Json> answers;
+  for (const Json& line : lines_of(response->body)) answers[line.at("at").get<int>()] = line.at("answer");
+  ASSERT_EQ(answers.size(), 6U);
+  EXPECT_EQ(answers[1], view.ask("plane", plane).body);
+  EXPECT_EQ(answers[0].at("pairs").size(), 1U);
+  EXPECT_THAT(answers[2].at("error").get<std::string>(), HasSubstr("phong"));
+  EXPECT_THAT(answers[3].at("error").get<std::string>(), HasSubstr("'theta_in' in a question is not right"));
+  EXPECT_EQ(answers[4], Json::object());
+  EXPECT_THAT(answers[5].at("error").get<std::string>(), HasSubstr("no JSON that the page would send"));
+  // Quick ones before slow ones, whatever their order.
+  EXPECT_EQ(lines_of(response->body).back().at("at"), 0);
+}
+
+TEST_F(View, AnswersTheOthersWhereOneOfThemIsStale) {
+  const ViewProcess view({"lambert"}, here());
+  (void)view.ask("plane", {{"material", "lambert"}, {"theta_in", 30}, {"slot", "page 1"}, {"number", 7}});
+  auto client = view.client();
+  const Json questions{
+      {"questions",
+       {{{"kind", "plane"}, {"material", "lambert"}, {"theta_in", 20}, {"slot", "page 1"}, {"number", 3}},
+        {{"kind", "plane"}, {"material", "lambert"}, {"theta_in", 20}, {"slot", "page 2"}, {"number", 4}}}}};
+  const auto response = client.Post("/" + view.token() + "/asks", questions.dump(), "application/json");
+  ASSERT_TRUE(response);
+  const auto lines = lines_of(response->body);
+  ASSERT_EQ(lines.size(), 2U);
+  for (const Json& line : lines) {
+    EXPECT_EQ(line.at("answer").contains("stale"), line.at("at") == 0) << line;
+  }
+}
+
+TEST_F(View, RefusesListsThatAreNoQuestions) {
+  const ViewProcess view({"lambert"}, here());
+  auto client = view.client();
+  const auto status = [&](const std::string& body, const char* type = "application/json") {
+    const auto response = client.Post("/" + view.token() + "/asks", body, type);
+    EXPECT_TRUE(response) << body;
+    EXPECT_TRUE(response && Json::parse(response->body).contains("error")) << body;
+    return response ? response->status : 0;
+  };
+  EXPECT_EQ(status("{"), 400);
+  EXPECT_EQ(status("{}"), 400);
+  EXPECT_EQ(status(R"({"questions": 5})"), 400);
+  EXPECT_EQ(status(R"({"questions": null})"), 400);
+  EXPECT_EQ(status(R"({"questions": {"a": {"kind": "forget"}}})"), 400);
+  EXPECT_EQ(status(R"({"questions": []})", "text/plain"), 400);
+  Json many{{"questions", Json::array()}};
+  for (int i = 0; i < 101; ++i) many["questions"].push_back({{"kind", "exposure"}});
+  EXPECT_EQ(status(many.dump()), 400);
+  // Half a million lists in each other.
+  const std::string deep(500'000, '[');
+  EXPECT_EQ(status(R"({"questions": )" + deep), 422);
+  EXPECT_EQ(view.ask("material", material("lambert")).status, 200);
+  const auto nested = client.Post("/" + view.token() + "/ask/plane", R"({"material": )" + deep, "application/json");
+  ASSERT_TRUE(nested);
+  EXPECT_EQ(nested->status, 422);
+
+  // One that is none leaves the others.
+  const std::string_view odd[] = {"5",
+                                  R"({"material": "lambert"})",
+                                  R"({"kind": 7})",
+                                  R"({"kind": "plane", "slot": 3})",
+                                  R"({"kind": "plane", "number": "x"})",
+                                  R"({"kind": "secrets"})"};
+  for (const std::string_view one : odd) {
+    const std::string body =
+        R"({"questions": [)" + std::string(one) + R"(, {"kind": "material", "material": "lambert"}]})";
+    const auto response = client.Post("/" + view.token() + "/asks", body, "application/json");
+    ASSERT_TRUE(response) << one;
+    const auto lines = lines_of(response->body);
+    ASSERT_EQ(lines.size(), 2U) << one;
+    for (const Json& line : lines) EXPECT_EQ(line.at("answer").contains("error"), line.at("at") == 0) << line;
+  }
+}
+
+TEST_F(View, TellsQuickAnswersWhileSlowOnesAreMade) {
+  const ViewProcess view({"lambert"}, here());
+  const Json questions{{"questions",
+                        {{{"kind", "fit"}, {"material", "ggx:alpha=0.3"}, {"family", "ward+ward+phong+oren_nayar"}},
+                         {{"kind", "material"}, {"material", "lambert"}}}}};
+  const std::string body = questions.dump();
+  const RawClient client(view.port(), "POST /" + view.token() + "/asks HTTP/1.1\r\nHost: 127.0.0.1:" +
+                                          std::to_string(view.port()) + "\r\nContent-Type: application/json\r\n" +
+                                          "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body);
+  ASSERT_TRUE(client.is_connected());
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_TRUE(client.reads(R"({"at":1,"answer":{"name":"lambert")"));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2)) << "the fit alone takes longer";
 }
 
 TEST_F(View, RefusesAGigabyteAndLivesOn) {

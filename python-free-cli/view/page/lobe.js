@@ -65,18 +65,20 @@ function drawLobe(canvas, answer, colour, place) {
   const parts = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
   for (const { corners, light } of patches) {
     paint.beginPath();
+    const middle = { x: corners.reduce((sum, one) => sum + one.x, 0) / 4, y: corners.reduce((sum, one) => sum + one.y, 0) / 4 };
     corners.forEach((corner, i) => {
-      const [x, y] = [lobeSize / 2 + corner.x * lobeSize * 0.46, lobeSize * 0.62 - corner.y * lobeSize * 0.46];
+      // A little larger, so that nothing shows between patches.
+      const size = Math.hypot(corner.x - middle.x, corner.y - middle.y) * lobeSize * 0.46;
+      const grown = 1 + (size > 0 ? 0.35 / size : 0);
+      const x = lobeSize / 2 + (middle.x + (corner.x - middle.x) * grown) * lobeSize * 0.46;
+      const y = lobeSize * 0.62 - (middle.y + (corner.y - middle.y) * grown) * lobeSize * 0.46;
       if (i === 0) paint.moveTo(x, y);
       else paint.lineTo(x, y);
     });
     paint.closePath();
     const shade = parts.map((part) => Math.round(part * (0.45 + 0.55 * light)));
     paint.fillStyle = `rgb(${shade.join(" ")})`;
-    paint.strokeStyle = paint.fillStyle;
-    paint.lineWidth = 0.5;
     paint.fill();
-    paint.stroke();
   }
   line([[0, 0, 0], [0, 0, 1.05]], grid, 1);
   line([[0, 0, 0], spherePoint(state.theta, state.phi, 1.05)], style.getPropertyValue("--accent"), 2);
@@ -87,13 +89,23 @@ function drawLobes() {
   while (row.children.length > lobes.length) row.lastChild.remove();
   const all = lobes.flatMap((one) => one?.values ?? []).map(number);
   const { place } = heights(all, state.scale);
+  const style = getComputedStyle(document.documentElement);
+  const finite = all.filter(Number.isFinite);
+  const look = [Math.min(...finite), Math.max(...finite), state.scale, state.eye, state.theta, state.phi,
+    style.getPropertyValue("--line"), style.getPropertyValue("--accent"), window.devicePixelRatio];
   // Answers come in any order: what waits for its own has a place already.
   Array.from(lobes).forEach((answer, i) => {
     if (row.children.length <= i) row.append(lobeFigure());
     const [canvas, caption] = row.children[i].children;
     canvas.setAttribute("aria-label", `lobe of ${letterOf(i)} for light from ${state.theta}°`);
     caption.textContent = letterOf(i);
-    if (answer !== null && answer !== undefined) drawLobe(canvas, answer, colours[i], place);
+    if (answer === null || answer === undefined) return;
+    // Where only others have changed, and not so that it is drawn to another scale, it stands there already.
+    const drawn = JSON.stringify([look, colours[i]]);
+    if (canvas.drawnAnswer === answer && canvas.drawn === drawn) return;
+    drawLobe(canvas, answer, colours[i], place);
+    canvas.drawnAnswer = answer;
+    canvas.drawn = drawn;
   });
 }
 
@@ -117,9 +129,9 @@ function lobeFigure() {
 function showLobes() {
   lobes.length = state.materials.length;
   state.materials.forEach((text, i) => {
-    ask(`lobe ${i}`, "lobe", { material: text, theta_in: state.theta, phi_in: state.phi }, (answer, error) => {
-      lobes[i] = error !== null ? null : answer;
-      drawLobes();
+    ask(`lobe ${i}`, "lobe", { material: text, theta_in: state.theta, phi_in: state.phi }, (answer, error, isPart) => {
+      if (isShown(i)) lobes[i] = error !== null ? null : answer;
+      if (!isPart) drawNext(drawLobes);
     });
   });
 }

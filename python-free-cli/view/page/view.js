@@ -161,6 +161,9 @@ function drawPlane() {
   }
 }
 
+/** Answers may come when their material has been taken away. */
+const isShown = (i) => i < state.materials.length;
+
 /** Samples of files near the plane of incidence. */
 const samples = [];
 
@@ -168,7 +171,8 @@ function showSamples() {
   samples.length = state.materials.length;
   state.materials.forEach((text, i) => {
     if (text !== samples[i]?.text) samples[i] = undefined;
-    ask(`samples ${i}`, "samples", { material: text, theta_in: state.theta, phi_in: state.phi }, (answer, error) => {
+    ask(`samples ${i}`, "samples", { material: text, theta_in: state.theta, phi_in: state.phi }, (answer, error, isPart) => {
+      if (!isShown(i)) return drawNext(drawPlane);
       const list = error !== null ? [] : answer.samples;
       samples[i] = list.map((one) => ({ x: one.theta_out, y: number(one.value), deviation: number(one.deviation ?? 0) }));
       samples[i].text = text;
@@ -177,7 +181,7 @@ function showSamples() {
       const near = samples.find((own) => own?.length > 0)?.near;
       $("samples-note").textContent = all === 0 ? "" : `Dots: ${counted(all, "sample")} within ${general(near, 2)}° ` +
         "of the angle of light and of the plane, with their stated deviations; by reciprocity also those of exchanged directions.";
-      drawPlane();
+      if (!isPart) drawNext(drawPlane);
     });
   });
 }
@@ -185,10 +189,10 @@ function showSamples() {
 function showPlanes() {
   planes.length = state.materials.length;
   state.materials.forEach((text, i) => {
-    ask(`plane ${i}`, "plane", { material: text, theta_in: state.theta, phi_in: state.phi }, (answer, error) => {
-      planes[i] = error !== null ? null : { name: nameOf(text), colour: colours[i], ...listOf(answer, "theta_out") };
+    ask(`plane ${i}`, "plane", { material: text, theta_in: state.theta, phi_in: state.phi }, (answer, error, isPart) => {
+      if (isShown(i)) planes[i] = error !== null ? null : { name: nameOf(text), colour: colours[i], ...listOf(answer, "theta_out") };
       if (error !== null) say(`${nameOf(text)}: ${error.message}`, true);
-      drawPlane();
+      if (!isPart) drawNext(drawPlane);
     });
   });
 }
@@ -235,9 +239,9 @@ function drawSlices() {
 function showSlices() {
   slices.length = state.materials.length;
   state.materials.forEach((text, i) => {
-    ask(`slice ${i}`, "slice", { material: text }, (answer, error) => {
-      slices[i] = error !== null ? null : answer;
-      drawSlices();
+    ask(`slice ${i}`, "slice", { material: text }, (answer, error, isPart) => {
+      if (isShown(i)) slices[i] = error !== null ? null : answer;
+      if (!isPart) drawNext(drawSlices);
     });
   });
 }
@@ -262,7 +266,7 @@ function showCompositions() {
     }
     $("plane-note").textContent = reasons.length > 0
       ? reasons.join(" ") : "Long dashes: the first material, then the second; dots: the second, then the first.";
-    drawPlane();
+    drawNext(drawPlane);
   }, true);
 }
 
@@ -280,10 +284,10 @@ function drawAlbedos() {
 function showAlbedos() {
   albedos.length = state.materials.length;
   state.materials.forEach((text, i) => {
-    ask(`albedo ${i}`, "albedos", { material: text, phi_in: state.phi }, (answer, error) => {
-      albedos[i] = error !== null ? null : { name: nameOf(text), colour: colours[i], ...listOf(answer, "theta_in") };
+    ask(`albedo ${i}`, "albedos", { material: text, phi_in: state.phi }, (answer, error, isPart) => {
+      if (isShown(i)) albedos[i] = error !== null ? null : { name: nameOf(text), colour: colours[i], ...listOf(answer, "theta_in") };
       if (error !== null) $("albedo-note").textContent = `${nameOf(text)}: ${error.message}`;
-      drawAlbedos();
+      if (!isPart) drawNext(drawAlbedos);
     });
   });
 }
@@ -316,7 +320,7 @@ function drawSpectra() {
 function forgetValue() {
   state.materials.forEach((text, i) => forget(`value ${i}`));
   spectra.length = 0;
-  drawSpectra();
+  drawNext(drawSpectra);
   $("value").textContent = "Point at the picture for values with their errors.";
 }
 
@@ -330,7 +334,7 @@ function showValue(angle) {
         (number(one.error) === 0 ? general(number(one.value), 8) : told(one)));
       lines[i] = `${letterOf(i)}: ${listed(texts)} 1/sr`;
       spectra[i] = error === null && answer.channels.length > 6 ? answer.channels : null;
-      drawSpectra();
+      drawNext(drawSpectra);
       $("value").textContent = `From ${general(state.theta, 4)}° to ${general(Math.abs(angle), 4)}° ` +
         `${angle < 0 ? "on the side of the light" : "on the mirror side"}. ${lines.filter((line) => line !== "").join("; ")}`;
     });
@@ -413,10 +417,10 @@ function showChecks() {
     ask(`check ${i}`, "check", { material: text }, (answer, error) => {
       if (text !== state.materials[i]) return;
       checks[i] = error !== null ? { reason: error.message, text } : { ...answer, text };
-      drawChecks();
+      drawNext(drawChecks);
     });
   });
-  drawChecks();
+  drawNext(drawChecks);
 }
 
 let distances = {};
@@ -452,10 +456,10 @@ function showDistances() {
     ask(`distance ${lighting}`, "distances", { materials, lighting, theta_max: state.domain }, (answer, error) => {
       if (JSON.stringify(materials) !== JSON.stringify(state.materials) || domain !== state.domain) return;
       distances[lighting] = error !== null ? { reason: error.message } : answer;
-      drawDistances();
+      drawNext(drawDistances);
     }, lighting.startsWith("patch"));
   }
-  drawDistances();
+  drawNext(drawDistances);
 }
 
 function findNearest() {
@@ -494,7 +498,7 @@ function startFit(event) {
     if (found !== undefined && found.material !== best?.material) {
       best = found;
       fitted = { name: `best so far: ${best.material}`, colour: "#808080", dash: "4 4", ...listOf(best.plane, "theta_out") };
-      drawPlane();
+      drawNext(drawPlane);
     }
     tellShare(share);
   };
@@ -513,7 +517,7 @@ function startFit(event) {
 function forgetFitted() {
   if (fitted === null) return;
   fitted = null;
-  drawPlane();
+  drawNext(drawPlane);
 }
 
 // What is shown, as a whole.
@@ -570,18 +574,18 @@ function showState() {
     lobes: showLobes,
     pointed: forgetValue,
     scene: showScene,
-    eye: drawLobes,
+    eye: () => drawNext(drawLobes),
     drawn: () => {
-      drawPlane();
-      drawLobes();
-      drawSlices();
+      drawNext(drawPlane);
+      drawNext(drawLobes);
+      drawNext(drawSlices);
     } };
   const news = Object.keys(parts).filter((key) => JSON.stringify(parts[key]) !== shownParts[key]);
   for (const key of news) {
     shownParts[key] = JSON.stringify(parts[key]);
     show[key]();
   }
-  if (news.includes("compositions")) drawPlane();
+  if (news.includes("compositions")) drawNext(drawPlane);
   const set = (id, value) => {
     if (document.activeElement !== $(id) || $(id).type === "range") $(id).value = value;
   };
@@ -725,9 +729,9 @@ function listen() {
     if (event.dataTransfer.files.length > 0) takeFile(event.dataTransfer.files[0]);
   });
   window.addEventListener("resize", () => {
-    drawPlane();
-    drawSpectra();
-    drawAlbedos();
+    drawNext(drawPlane);
+    drawNext(drawSpectra);
+    drawNext(drawAlbedos);
   });
 }
 
