@@ -20,8 +20,8 @@
 namespace [[gnu::visibility("default")]] lobe {
 
 /// Allocator on cache lines, so that devices that share the host's memory can use tables in place. It leaves numbers
-/// uninitialised: a table may have gigabytes that are written next anyway. While a MemoryBound
-/// lives, large tables lie in files.
+/// uninitialised: a table may have gigabytes that are written next anyway. While a MemoryBound lives, large tables lie
+/// in files.
 template <typename T>
 struct TableAllocator {
   using value_type = T;  ///< type of the elements
