@@ -10,8 +10,11 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "compare/comparison_routes.hpp"
+#include "fit/fit_target.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
@@ -20,6 +23,7 @@
 #include "lobe/reflectance/tabulate.hpp"
 #include "lobe/study/study.hpp"
 #include "lobe/table/brdf_function.hpp"
+#include "metric/routes.hpp"
 #include "model/evaluate.hpp"
 #include "support/device.hpp"
 #include "table/tabulate.hpp"
@@ -250,6 +254,119 @@ TEST(Fit, OfAFunctionTakesATableWhereItNeedsOne) {
   EXPECT_EQ(found.grid->name(), "gauss:64x128");
   EXPECT_FALSE(found.is_coarse);
   EXPECT_EQ(found.residual.value, fit(device(), table, parse_family("phong"), options).residual.value);
+}
+
+/// Members around a point as searches ask for them: steps of scales and of the shape.
+const std::vector<Material>& members_around_a_point() {
+  static const std::vector<Material> kMembers{parse_material("lambert:scale=0.3+phong:n=5,scale=0.4"),
+                                              parse_material("lambert:scale=0.31+phong:n=5,scale=0.4"),
+                                              parse_material("lambert:scale=0.3+phong:n=5,scale=0.39"),
+                                              parse_material("lambert:scale=0.3+phong:n=5.01,scale=0.4")};
+  return kMembers;
+}
+
+/// Searches take products of sums from those of terms: against those of the members themselves.
+/// \param rounding relative to the norm of the target
+void expect_products_of_members(const FitTarget& target, const Metric& expected, double rounding) {
+  const Metric found = target.products(members_around_a_point(), 1e-6).combined;
+  const double norm = expected.norm(0);
+  EXPECT_LE((found.gram - expected.gram).cwiseAbs().maxCoeff(), rounding * norm * norm);
+  for (Eigen::Index i = 0; i < expected.distance.rows(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      // Of a squared distance rounding is relative to the squared norm.
+      const double error = rounding * norm * norm / std::max(expected.distance(i, j), std::sqrt(rounding) * norm);
+      EXPECT_NEAR(found.distance(i, j), expected.distance(i, j), error) << i << ", " << j;
+    }
+  }
+}
+
+class ProductsOfMembers : public ::testing::TestWithParam<std::pair<std::string, double>> {};
+
+TEST_P(ProductsOfMembers, AreThoseOfTheirTablesBesideATable) {
+  const auto& [name, rounding] = GetParam();
+  const HemisphereGrid grid = HemisphereGrid::parse(name);
+  const BrdfTable table = tabulate(device(), parse_material("lambert:scale=0.2/0.3+phong:n=3,scale=0.5"), grid);
+  const FitOptions options;
+
+  std::vector<BrdfTable> all{table};
+  for (const Material& member : members_around_a_point()) all.push_back(tabulate(device(), member, grid));
+  std::vector<const BrdfTable*> pointers;
+  for (const BrdfTable& one : all) pointers.push_back(&one);
+  const auto measured = measure_tables(device(), pointers, Lighting::point(), {});
+
+  expect_products_of_members(fit_target(device(), table, options, {}), measured.combined, rounding);
+}
+
+// Averages over cells of members and of their terms are refined one without the other, to 1e-5.
+INSTANTIATE_TEST_SUITE_P(Fit, ProductsOfMembers,
+                         ::testing::Values(std::pair("gauss:16x32", 1e-12), std::pair("klems:145", 1e-5)),
+                         [](const auto& test) { return test.param.first.substr(0, 5); });
+
+class ProductsBesideAFunction : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ProductsBesideAFunction, AreThoseOfTheMembers) {
+  const BrdfFunction function = as_function(device(), parse_material(GetParam()));
+  FitOptions options;
+  options.theta_max = 80 * kDegree;
+  options.channel_weights.assign(function.channels.size(), 4);
+  std::vector<BrdfFunction> all{function};
+  for (const Material& member : members_around_a_point()) all.push_back(as_function(device(), member));
+
+  const auto measured =
+      measure_functions(all, Lighting::point(),
+                        {.tolerance = 0.1, .channel_weights = options.channel_weights, .theta_max = options.theta_max});
+
+  expect_products_of_members(fit_target(device(), function, options, {}), measured.combined, 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(Fit, ProductsBesideAFunction,
+                         ::testing::Values("phong:n=3,scale=0.5", "phong:n=3,scale=0.5/0.4/0.1"),
+                         [](const auto& test) { return test.index == 0 ? "OneChannel" : "ThreeChannels"; });
+
+TEST(Fit, ComparesMembersBesideATable) {
+  const HemisphereGrid grid = HemisphereGrid::gauss(16, 32);
+  const BrdfTable table = tabulate(device(), parse_material("lambert:scale=0.2+phong:n=3,scale=0.5"), grid);
+  FitOptions options;
+  options.objective = FitObjective::log;
+  std::vector<Material> members = members_around_a_point();
+  members.push_back(parse_material("lambert:scale=0+phong:n=3,scale=0"));
+  std::vector<BrdfTable> all{table};
+  for (const Material& member : members) all.push_back(tabulate(device(), member, grid));
+  std::vector<const BrdfTable*> pointers;
+  for (const BrdfTable& one : all) pointers.push_back(&one);
+  const auto expected = compare_tables(pointers, options.metric, {.tolerance = 1e-3}).combined;
+
+  const auto found = fit_target(device(), table, options, {}).compared(members, 1e-3);
+
+  EXPECT_LE((found.distance - expected.distance).cwiseAbs().maxCoeff(), 1e-12 * found.target_norm.value);
+}
+
+TEST(Fit, SaysWhichGridWouldResolveTheFamily) {
+  const auto table = tabulate(device(), parse_material("phong:n=3"), HemisphereGrid::gauss(16, 32));
+  FitOptions options;
+  options.ranges = {{"n", 1e5, 1e6}};
+  try {
+    (void)fit(device(), table, parse_family("phong"), options);
+    FAIL() << "fitted";
+  } catch (const NumericError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("it needs "));
+  }
+}
+
+// Sums over nodes take one order of directions for functions that are reciprocal.
+TEST(AsFunction, SaysWhetherAFormulaIsReciprocal) {
+  EXPECT_TRUE(as_function(device(), parse_material("ward:m=0.3")).is_reciprocal);
+  const Material sheen = parse_material("zeltner_sheen:alpha=0.5");
+  const std::vector<BrdfFunction> pair{as_function(device(), sheen), as_function(device(), parse_material("lambert"))};
+  EXPECT_FALSE(pair.front().is_reciprocal);
+
+  const Metric found = measure_functions(pair, Lighting::point(), {.tolerance = 1e-3}).combined;
+
+  const Metric expected =
+      measure_formulas(device(), std::vector{sheen, parse_material("lambert")}, Lighting::point(), {}).combined;
+  EXPECT_NEAR(found.gram(0, 0), expected.gram(0, 0), found.gram_error(0, 0) + expected.gram_error(0, 0));
+  EXPECT_NEAR(found.distance(0, 1), expected.distance(0, 1),
+              found.distance_error(0, 1) + expected.distance_error(0, 1));
 }
 
 /// The largest relative errors, from values and albedos alone.

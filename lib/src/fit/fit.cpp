@@ -223,10 +223,15 @@ class Fit {
   Descent descent_from(const VectorXd& x, double tolerance, DescentOptions options) {
     options.progress = [this](double share) { progress_.report(share); };
     if (options_.watch) options.moved = [this](const VectorXd& at, double distance) { tell_better(at, distance); };
-    Descent descent = descend(
-        space_, [&](std::span<const Material> members) { return measured(members, tolerance).distance; }, x, options);
-    evaluations_ += descent.evaluations;
-    return descent;
+    try {
+      Descent descent = descend(
+          space_, [&](std::span<const Material> members) { return measured(members, tolerance).distance; }, x, options);
+      evaluations_ += descent.evaluations;
+      return descent;
+    } catch (const UnresolvedError& error) {
+      const auto more = target_.refusal ? target_.refusal(space_.material(x)) : std::nullopt;
+      throw UnresolvedError(more.value_or(error.what()));
+    }
   }
 
   void tell_better(const VectorXd& x, double distance) {

@@ -102,10 +102,16 @@ MeasuredShapes measure_shapes(const FitTarget& target, const FitSpace& space, st
     for (std::size_t k = 0; k < shapes.size(); ++k) {
       std::string why;
       std::erase_if(shapes[k], [&](const Shape& shape) {
+        const Material member = space.member(k, shape);
         try {
-          const Material member = space.member(k, shape);
           (void)target.rough_products({&member, 1}, tolerance);
           return false;
+        } catch (const UnresolvedError& error) {
+          // Which grid would do is found for the message alone.
+          const bool is_last = &shape == &shapes[k].back();
+          const auto more = is_last && target.refusal ? target.refusal(member) : std::nullopt;
+          why = more.value_or(error.what());
+          return true;
         } catch (const NumericError& error) {
           why = error.what();
           return true;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ struct FitTarget {
   std::function<TargetDistances(std::span<const Material>, double tolerance)> compared;
   std::function<std::vector<std::vector<Estimate>>(std::span<const Directions>)> values;  ///< [channel][pair], sr^-1
   std::function<std::vector<std::vector<Estimate>>(std::span<const Direction>)> albedos;  ///< [channel][direction]
+  /// Which grid would resolve a material that the target's does not, as a message; nothing where it does. Searches do
+  /// without; it takes long. None: what the products throw says it.
+  std::function<std::optional<std::string>(const Material&)> refusal = {};
 };
 
 /// The functions keep references to the arguments.

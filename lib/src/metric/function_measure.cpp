@@ -58,21 +58,25 @@ Directions pair_of(const PairNode& node, std::size_t variant, double azimuth) {
   return {node.theta_out, node.theta_in, delta_phi, azimuth};
 }
 
-/// Every second group of rows again, for the other sign of delta_phi.
-Eigen::MatrixXd with_mirror_images(const Eigen::MatrixXd& rows) {
-  Eigen::MatrixXd both(2 * rows.rows(), rows.cols());
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) both.middleRows(2 * i, 2) = rows.row(i).replicate(2, 1);
-  return both;
+/// Every row for all variants that have the same values, one after the other.
+Eigen::MatrixXd repeated(const Eigen::MatrixXd& rows, Eigen::Index times) {
+  Eigen::MatrixXd all(times * rows.rows(), rows.cols());
+  for (Eigen::Index c = 0; c < rows.cols(); ++c) {
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) all.col(c).segment(times * i, times).setConstant(rows(i, c));
+  }
+  return all;
 }
 
 /// Values and errors of one function, (node, variant, azimuth) x channels, with one azimuth for isotropic ones.
-BrdfValues function_values(const BrdfFunction& function, const std::vector<PairNode>& nodes) {
+BrdfValues function_values(const BrdfFunction& function, const std::vector<PairNode>& nodes, WorkDone& work) {
   const std::size_t azimuths = function.is_isotropic ? 1 : kAzimuths;
+  // Of even functions the other sign of delta_phi, and of those that are reciprocal, too, the other order.
   const bool is_even = function.is_isotropic && function.is_bilateral;
+  const std::size_t alike = !is_even ? 1 : function.is_reciprocal ? kVariants : 2;
   std::vector<Directions> pairs;
-  pairs.reserve(nodes.size() * kVariants * azimuths);
+  pairs.reserve(nodes.size() * kVariants / alike * azimuths);
   for (const PairNode& node : nodes) {
-    for (std::size_t v = 0; v < kVariants; v += is_even ? 2 : 1) {
+    for (std::size_t v = 0; v < kVariants; v += alike) {
       for (std::size_t a = 0; a < azimuths; ++a) {
         const double azimuth = 2 * pi * (static_cast<double>(a) + node.turn) / static_cast<double>(azimuths);
         pairs.push_back(pair_of(node, v, azimuth));
@@ -80,7 +84,9 @@ BrdfValues function_values(const BrdfFunction& function, const std::vector<PairN
     }
   }
   BrdfValues values = values_at(function, pairs);
-  if (is_even) values = {with_mirror_images(values.value), with_mirror_images(values.error)};
+  work.evaluations += pairs.size();
+  const auto times = static_cast<Eigen::Index>(alike);
+  if (is_even) values = {repeated(values.value, times), repeated(values.error, times)};
   return values;
 }
 
@@ -128,9 +134,8 @@ class FunctionIntegrator {
 
   [[nodiscard]] BrdfValues values_of(std::size_t f, const std::vector<PairNode>& nodes) {
     Stopwatch watch;
-    BrdfValues values = function_values(functions_[f], nodes);
+    BrdfValues values = function_values(functions_[f], nodes, work_);
     work_.nodes += f == 0 ? nodes.size() : 0;
-    work_.evaluations += static_cast<std::size_t>(values.value.rows());
     work_.seconds_values += watch.lap();
     return values;
   }

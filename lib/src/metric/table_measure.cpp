@@ -33,19 +33,17 @@ struct PairProducts {
   std::vector<Estimate> squared_distance;
 };
 
-/// measure_tables() of what the pattern of a lighting makes of tables.
-MetricResult measure_lit_tables(const Device& device, std::span<const BrdfTable* const> tables,
-                                const Lighting& lighting, const TableMetricOptions& options) {
-  if (tables.empty()) return measure_tables(device, tables, Lighting::point(), options);
+/// products_of_tables() of what the pattern of a lighting makes of tables.
+std::vector<ChannelProducts> products_of_lit_tables(const Device& device, std::span<const BrdfTable* const> tables,
+                                                    const Lighting& lighting, const TableMetricOptions& options) {
+  if (tables.empty()) return products_of_tables(device, tables, Lighting::point(), options);
   static_cast<void>(cos_of_domain(options.theta_max, lighting));
   const MaterialLight light(device, lighting, tables.front()->grid, {.progress = options.progress});
   std::vector<BrdfTable> lit;
   for (const BrdfTable* table : tables) lit.push_back(light.lit(*table));
   std::vector<const BrdfTable*> all;
   for (const BrdfTable& table : lit) all.push_back(&table);
-  MetricResult result = measure_tables(device, all, Lighting::point(), options);
-  result.lighting = lighting;
-  return result;
+  return products_of_tables(device, all, Lighting::point(), options);
 }
 
 }  // namespace
@@ -70,6 +68,7 @@ Displacement table_displacement(const BrdfTable& before, const BrdfTable& after)
 
 std::vector<ChannelProducts> products_of_tables(const Device& device, std::span<const BrdfTable* const> tables,
                                                 const Lighting& lighting, const TableMetricOptions& options) {
+  if (traits_of(lighting).is_pattern) return products_of_lit_tables(device, tables, lighting, options);
   OperandShape shape = common_shape(tables, true);
   shape.keeps_forms = true;
   const std::vector<double> weights = channel_weights(options.channel_weights, shape.channels);
@@ -123,7 +122,6 @@ MetricResult metric_of(std::vector<ChannelProducts> products) {
 
 MetricResult measure_tables(const Device& device, std::span<const BrdfTable* const> tables, const Lighting& lighting,
                             const TableMetricOptions& options) {
-  if (traits_of(lighting).is_pattern) return measure_lit_tables(device, tables, lighting, options);
   Stopwatch watch;
   MetricResult result = metric_of(products_of_tables(device, tables, lighting, options));
   result.lighting = lighting;

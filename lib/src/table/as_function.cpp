@@ -1,12 +1,15 @@
 #include <algorithm>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "lobe/core/error.hpp"
 #include "lobe/model/model.hpp"
 #include "lobe/table/brdf_function.hpp"
 #include "model/evaluate.hpp"
+#include "model/traits.hpp"
+#include "model/values.hpp"
 #include "table/as_function.hpp"
 #include "table/evaluate.hpp"
 
@@ -19,6 +22,25 @@ std::vector<std::string> numbered(std::size_t channels) {
   for (std::size_t c = 1; c <= channels; ++c) names.push_back(std::to_string(c));
   return names;
 }
+
+/// What evaluates a material on a device, made when it is needed, and again for more pairs at once.
+struct KeptValues {
+  NodeMaking making;
+  std::mutex turn = {};
+  std::optional<MaterialValues> values = {};
+  std::size_t at_once = 0;
+
+  Eigen::MatrixXd at(const Device& device, const Material& material, Precision precision,
+                     std::span<const Directions> pairs) {
+    if (pairs.empty()) return unchecked_values(device, material, pairs, precision);
+    const std::size_t wanted = std::min(pairs.size(), MaterialValues::kAtOnce);
+    if (!values || wanted > at_once) {
+      values.emplace(device, material, precision, making, wanted);
+      at_once = wanted;
+    }
+    return values->at(pairs);
+  }
+};
 
 }  // namespace
 
@@ -37,11 +59,24 @@ BrdfFunction as_function(const Device& device, const Material& material, Precisi
   brdf.channels = numbered(material.channels());
   brdf.is_isotropic = std::ranges::all_of(material.terms, &Traits::isotropic, traits);
   brdf.is_bilateral = brdf.is_isotropic;
+  brdf.is_reciprocal = is_reciprocal(material);
   brdf.is_concurrent = false;  // the device is
   const auto turn = std::make_shared<std::mutex>();
   brdf.at = [device, material, precision, turn](std::span<const Directions> pairs) {
     const std::scoped_lock lock(*turn);
     return BrdfValues{evaluate(device, material, pairs, precision), {}};
+  };
+  return brdf;
+}
+
+BrdfFunction kept_function(const Device& device, const Material& material, Precision precision, NodeMaking making) {
+  BrdfFunction brdf = as_function(device, material, precision);
+  const auto kept = std::make_shared<KeptValues>(making);
+  brdf.at = [device, material, precision, kept](std::span<const Directions> pairs) {
+    const std::scoped_lock lock(kept->turn);
+    BrdfValues values{kept->at(device, material, precision, pairs), {}};
+    require_finite(values.value, material.name, pairs);
+    return values;
   };
   return brdf;
 }

@@ -4,6 +4,7 @@
 #include "lobe/model/material.hpp"
 #include "lobe/table/brdf_function.hpp"
 #include "lobe/table/table.hpp"
+#include "model/values.hpp"
 
 namespace lobe {
 
@@ -12,6 +13,10 @@ namespace lobe {
 /// \param material prepared
 [[nodiscard]] BrdfFunction as_function(const Device& device, const Material& material,
                                        Precision precision = Precision::double_precision);
+/// The same, with what it needs on the device made once and kept as long as it lives: for few at a time that are asked
+/// often.
+[[nodiscard]] BrdfFunction kept_function(const Device& device, const Material& material, Precision precision,
+                                         NodeMaking making);
 [[nodiscard]] BrdfFunction as_function(const BrdfTable& table);
 
 }  // namespace lobe

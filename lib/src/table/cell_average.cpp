@@ -29,7 +29,7 @@ double square(double x) {
 /// Many channels take memory, of which parts that wait for halving have a share each.
 std::size_t budget_of(const AveragedFunction& function, const BrdfTable& table) {
   constexpr std::size_t kFewChannels = 8;
-  return function.budget / (1 + table.channels / kFewChannels);
+  return function.effort.budget / (1 + table.channels / kFewChannels);
 }
 
 /// Gauss nodes per coordinate of a box, of which a cell has at least two boxes: fewer the more there are.

@@ -11,6 +11,14 @@
 
 namespace lobe {
 
+/// How much work averages over cells may take.
+struct CellEffort {
+  /// Errors below this stay, relative to the value and to the mean one, beside those that average_over_cells() leaves.
+  double tolerance = 0;
+  /// Pairs that are looked at before the rest keeps its error, beside those that every pair of cells takes.
+  std::size_t budget = std::size_t{12} << 20U;
+};
+
 /// A reflectance whose averages over pairs of cells are wanted, and what its symmetries save.
 struct AveragedFunction {
   std::string name;                                           ///< for messages
@@ -24,8 +32,7 @@ struct AveragedFunction {
   double width = 0.005;
   double retro_width = 1;
   double rounding = 1e-12;  ///< of sums that cancel, as Zernike polynomials do, relative to the largest value of a row
-  /// Pairs that are looked at before the rest keeps its error, beside those that every pair of cells takes.
-  std::size_t budget = std::size_t{12} << 20U;
+  CellEffort effort = {};
 };
 
 /// Fills values and errors of a table on a grid of cells with averages of a function over pairs of cells, weighted by
@@ -34,9 +41,10 @@ struct AveragedFunction {
 /// Isotropic functions on rings of equal cells are integrated over both angles from the normal and delta_phi, in panels
 /// of delta_phi between the limits of all overlaps of cells, which are linear there; other ones over both cells. Gauss
 /// rules of boxes are compared with those of their halves (quarters, ...), and boxes halved until what is left of the
-/// difference is below 1e-5 of the value and of the mean one. The error is what the differences leave, by the rate at
-/// which they fall, the function's own, and rounding; isotropic tables of functions that are not bilateral hold the
-/// mean of both sides, half the difference of which is added.
+/// difference is below 1e-5 of the value and of the mean one (1e-4 over four coordinates), or below
+/// CellEffort::tolerance. The error is what the differences leave, by the rate at which they fall, the function's own,
+/// and rounding; isotropic tables of functions that are not bilateral hold the mean of both sides, half the difference
+/// of which is added.
 /// \param table grid, form and channels are set
 /// \param points per coordinate of a cell to begin with, at least 2
 /// \throws NumericError for values that are no finite numbers; Cancelled.

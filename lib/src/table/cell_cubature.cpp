@@ -299,7 +299,7 @@ CellCubature::Parts CellCubature::refine(std::span<const PairBox> targets, const
 
 std::vector<double> CellCubature::allowed_errors(std::span<const BoxIntegral> sums,
                                                  std::span<const double> volumes) const {
-  const double tolerance = dimensions() == 3 ? kTolerance : kToleranceOfFour;
+  const double tolerance = std::max(function_.effort.tolerance, dimensions() == 3 ? kTolerance : kToleranceOfFour);
   std::vector<double> level(channels_);
   double volume = 0;
   for (std::size_t target = 0; target < volumes.size(); ++target) {

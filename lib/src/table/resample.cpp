@@ -114,7 +114,7 @@ void average_interpolation(const BrdfTable& table, const Interpolator& from, Brd
                       .is_bilateral = is_isotropic,
                       .width = width,
                       .rounding = kOverlapRounding,
-                      .budget = kMostPairs},
+                      .effort = {.budget = kMostPairs}},
                      result, 2, {});
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -82,17 +83,19 @@ std::vector<double> value_errors(const BrdfTable& table, double relative) {
 
 /// Averages over cells, with their errors.
 void fill_averages(BrdfTable& table, const LobeTabulator& tabulator, const Device& device, const Material& smooth,
-                   const TabulateOptions& options) {
+                   const TabulateOptions& options, const CellEffort& effort) {
   if (smooth.terms.empty()) {
     const std::size_t rings = table.grid.rings().size();
     table.values.assign(table.channels * table.size(), 0.0);
     table.error.assign(table.channels * rings * rings, 0.0);
     return;
   }
-  const double relative = rounding(tabulator, options.precision);
+  constexpr double kQuickly = 4;  // times the rounding of nodes that are made closely; see NodeMaking
+  const double relative = kQuickly * rounding(tabulator, options.precision);
   const auto channels = static_cast<Eigen::Index>(table.channels);
+  MaterialValues material_values(device, smooth, options.precision, NodeMaking::quickly);
   const auto values_at = [&](std::span<const Directions> pairs) {
-    BrdfValues values{unchecked_values(device, smooth, pairs, options.precision), {}};
+    BrdfValues values{material_values.at(pairs), {}};
     if (values.value.cols() < channels) values.value = values.value.replicate(1, channels).eval();
     values.error = relative * values.value.cwiseAbs();
     return values;
@@ -105,7 +108,8 @@ void fill_averages(BrdfTable& table, const LobeTabulator& tabulator, const Devic
                       .is_concurrent = false,
                       .width = tabulator.lobes().narrowest,
                       .retro_width = tabulator.lobes().narrowest_retro,
-                      .rounding = relative},
+                      .rounding = relative,
+                      .effort = effort},
                      table, options.cell_points, options.progress);
 }
 
@@ -155,31 +159,20 @@ void fill_deltas(BrdfTable& table, const Device& device, const Material& deltas)
   table.retro = averages(parts.retro);
 }
 
-void require_resolved(BrdfTable& table, const LobeTabulator& tabulator, const std::string& name,
-                      const TabulateOptions& options) {
-  const Resolution worst = measure_resolution(tabulator, table.grid, options.cell_points);
-  table.resolution_error = worst.error;
-  if (worst.error <= options.tolerance) return;
-  if (!options.allow_unresolved) {
-    throw UnresolvedError("grid " + table.grid.name() + " does not resolve the lobe " +
-                          tabulator.lobes().names[worst.lobe] + " of '" + name +
-                          "' (integrals of its square are off by " + shortest(std::round(worst.error * 1000) / 10) +
-                          " %, expected at most " + shortest(options.tolerance * 100) + " %); it needs " +
-                          resolution_needed(tabulator, table.grid, options.tolerance));
-  }
-  table.is_unresolved = true;
+std::string refusal(const LobeTabulator& tabulator, const HemisphereGrid& grid, const Resolution& worst,
+                    const std::string& name, const TabulateOptions& options) {
+  return "grid " + grid.name() + " does not resolve the lobe " + tabulator.lobes().names[worst.lobe] + " of '" + name +
+         "' (integrals of its square are off by " + shortest(std::round(worst.error * 1000) / 10) +
+         " %, expected at most " + shortest(options.tolerance * 100) + " %); it needs " +
+         resolution_needed(tabulator, grid, options.tolerance);
 }
 
-}  // namespace
+/// What becomes of a table whose grid does not resolve a lobe.
+enum class IfUnresolved { refused, left_out };
 
-std::string resolution_needed(const Device& device, const Material& material, const HemisphereGrid& grid,
-                              const TabulateOptions& options) {
-  return resolution_needed(LobeTabulator(device, split_delta(material).smooth, options.precision), grid,
-                           options.tolerance);
-}
-
-BrdfTable tabulate(const Device& device, const Material& material, const HemisphereGrid& grid,
-                   const TabulateOptions& options) {
+std::optional<BrdfTable> make_table(const Device& device, const Material& material, const HemisphereGrid& grid,
+                                    const TabulateOptions& options, IfUnresolved if_unresolved,
+                                    const CellEffort& effort) {
   if (options.cell_points < 1 || options.cell_points > kMostCellPoints) {
     throw ArgumentError(std::to_string(options.cell_points) + " points per coordinate of a cell; expected 1 to " +
                         std::to_string(kMostCellPoints));
@@ -193,11 +186,17 @@ BrdfTable tabulate(const Device& device, const Material& material, const Hemisph
   table.expression = material.name;
   fill_deltas(table, device, split.deltas);
   if (!split.smooth.terms.empty()) {
-    require_resolved(table, tabulator, material.name, options);
+    const Resolution worst = measure_resolution(tabulator, grid, options.cell_points);
+    table.resolution_error = worst.error;
+    table.is_unresolved = !(worst.error <= options.tolerance);
+    if (table.is_unresolved && !options.allow_unresolved) {
+      if (if_unresolved == IfUnresolved::left_out) return std::nullopt;
+      throw UnresolvedError(refusal(tabulator, grid, worst, material.name, options));
+    }
     table.source = {split.smooth};
   }
   if (grid.has_cells()) {
-    fill_averages(table, tabulator, device, split.smooth, options);
+    fill_averages(table, tabulator, device, split.smooth, options, effort);
   } else {
     fill_values(table, tabulator);
     table.error = value_errors(table, tabulator.lobes().lobes() == 0 ? 0 : rounding(tabulator, options.precision));
@@ -208,6 +207,25 @@ BrdfTable tabulate(const Device& device, const Material& material, const Hemisph
   }
   if (options.form == TableForm::general) return to_general(table);
   return table;
+}
+
+}  // namespace
+
+std::string resolution_needed(const Device& device, const Material& material, const HemisphereGrid& grid,
+                              const TabulateOptions& options) {
+  return resolution_needed(LobeTabulator(device, split_delta(material).smooth, options.precision), grid,
+                           options.tolerance);
+}
+
+BrdfTable tabulate(const Device& device, const Material& material, const HemisphereGrid& grid,
+                   const TabulateOptions& options) {
+  return *make_table(device, material, grid, options, IfUnresolved::refused, {});
+}
+
+std::optional<BrdfTable> tabulate_if_resolved(const Device& device, const Material& material,
+                                              const HemisphereGrid& grid, const TabulateOptions& options,
+                                              const CellEffort& effort) {
+  return make_table(device, material, grid, options, IfUnresolved::left_out, effort);
 }
 
 }  // namespace lobe

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include "lobe/model/material.hpp"
 #include "lobe/table/brdf_function.hpp"
 #include "lobe/table/table.hpp"
+#include "table/cell_average.hpp"
 
 namespace lobe {
 
@@ -16,6 +18,12 @@ namespace lobe {
 /// \param material prepared
 [[nodiscard]] BrdfTable tabulate(const Device& device, const Material& material, const HemisphereGrid& grid,
                                  const TabulateOptions& options = {});
+/// The same, or nothing where the grid does not resolve a lobe, without looking for a grid that would, which takes
+/// longer than the table.
+/// \param effort for averages over cells
+[[nodiscard]] std::optional<BrdfTable> tabulate_if_resolved(const Device& device, const Material& material,
+                                                            const HemisphereGrid& grid, const TabulateOptions& options,
+                                                            const CellEffort& effort);
 /// Cells as they are on their own grid.
 [[nodiscard]] BrdfTable tabulate(const BrdfFunction& brdf, const HemisphereGrid& grid,
                                  const TabulateOptions& options = {});

@@ -52,6 +52,9 @@ struct BrdfFunction {
 
   bool is_isotropic = true;   ///< whether it is independent of phi_in
   bool is_bilateral = false;  ///< whether it is isotropic and equal for delta_phi and -delta_phi, to the last bits
+  /// Whether it is known to be equal for exchanged directions but for rounding, and its errors, too. Of isotropic and
+  /// bilateral functions sums then take one order. Whoever puts another `at` here sets it anew.
+  bool is_reciprocal = false;
 
   bool is_concurrent = true;  ///< whether calls of `at` from several threads run at the same time
 
