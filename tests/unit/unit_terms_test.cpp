@@ -145,8 +145,8 @@ TEST(ProductsOfSums, KeepWhatIsNotKnownToItsMembers) {
 
   for (const MatrixXd* matrix :
        {&found.gram, &found.gram_error, &found.squared_distance, &found.squared_distance_error}) {
-    EXPECT_TRUE(matrix->topLeftCorner(3, 3).allFinite());
-    EXPECT_TRUE(std::isnan((*matrix)(3, 1)));
+    EXPECT_TRUE(matrix->topLeftCorner(3, 3).allFinite()) << *matrix;
+    EXPECT_TRUE(std::isnan((*matrix)(3, 1))) << *matrix;
   }
 }
 

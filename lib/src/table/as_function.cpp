@@ -25,9 +25,11 @@ std::vector<std::string> numbered(std::size_t channels) {
 
 /// What evaluates a material on a device, made when it is needed, and again for more pairs at once.
 struct KeptValues {
+  explicit KeptValues(NodeMaking node_making) : making(node_making) {}
+
   NodeMaking making;
-  std::mutex turn = {};
-  std::optional<MaterialValues> values = {};
+  std::mutex turn;
+  std::optional<MaterialValues> values;
   std::size_t at_once = 0;
 
   Eigen::MatrixXd at(const Device& device, const Material& material, Precision precision,
