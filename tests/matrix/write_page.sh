@@ -63,7 +63,7 @@ cat <<END
 
 ## How long it takes
 
-Seconds from the start of the command to its end, on one thread of a machine with two cores that had other work, too:
+Seconds from the start of the command to its end, on a machine with two cores that had other work, too:
 
 END
 table seconds

@@ -50,14 +50,15 @@ CellEffort effort_for(double tolerance) {
   if (tolerance >= kRough) effort.budget = kRoughBudget;
   return effort;
 }
-// Of the tolerance of distances, and of distances by logarithms, which are content with less.
+// Averages over cells may have these shares of the tolerance of distances: by scalar products, and by logarithms, whose
+// searches begin with a larger one.
 constexpr double kCellShare = 0.1;
 constexpr double kLogCellShare = 0.01;
 
 /// A material on the grid of a target.
 /// \throws UnresolvedError
 BrdfTable table_beside(const Device& device, const BrdfTable& target, const Material& material, Precision precision,
-                       const CellEffort& effort = {}) {
+                       const CellEffort& effort) {
   auto table =
       tabulate_if_resolved(device, material, target.grid, {.precision = precision, .form = target.form}, effort);
   if (!table) throw UnresolvedError("grid " + target.grid.name() + " does not resolve '" + material.name + "'");
