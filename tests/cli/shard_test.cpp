@@ -455,7 +455,12 @@ TEST_F(KilledShards, GoOnWithoutLoss) {
   const auto outcome = run(first, {.interrupt_when = file("d/k.1-of-2.checkpoint"), .signal = SIGKILL});
   ASSERT_EQ(outcome.status, 128 + SIGKILL);
   expect_refusal({"merge", "d", "-o", "out"}, ExitCode::file, "d holds no shard");
+  fs::copy_file(file("d/k.1-of-2.checkpoint"), file("units"));
   EXPECT_THAT(make(first).error, HasSubstr("went on from "));
+  // Between writing the shard and removing the checkpoint.
+  fs::rename(file("units"), file("d/k.1-of-2.checkpoint"));
+  EXPECT_THAT(make(first).error, HasSubstr("shard 1/2 is complete"));
+  EXPECT_THAT(names_in(file("d")), ElementsAre("k.1-of-2.shard"));
   make({"run", "k.toml", "--shard", "2/2", "-o", "d"});
   make({"merge", "d", "-o", "out"});
   fs::rename(file("out"), file("kept"));

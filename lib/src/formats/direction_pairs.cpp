@@ -8,7 +8,6 @@
 #include <exception>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -28,6 +27,7 @@
 #include "model/delta.hpp"
 #include "model/values.hpp"
 #include "reflectance/prepared.hpp"
+#include "table/as_function.hpp"
 
 namespace lobe {
 namespace {
@@ -44,24 +44,9 @@ bool is_numbered(const std::vector<std::string>& channels) {
   return true;
 }
 
-/// A function of a formula that keeps what it needs on the device, for as long as there are pairs.
-BrdfFunction function_of_formula(const Device& device, const Material& material, Precision precision) {
-  BrdfFunction brdf = as_function(device, material, precision);
-  const auto values =
-      std::make_shared<MaterialValues>(device, material, precision, NodeMaking::quickly, PairList::kBlock);
-  const auto turn = std::make_shared<std::mutex>();
-  brdf.at = [name = material.name, values, turn](std::span<const Directions> pairs) {
-    const std::scoped_lock lock(*turn);
-    BrdfValues found{values->at(pairs), {}};
-    require_finite(found.value, name, pairs);
-    return found;
-  };
-  return brdf;
-}
-
 BrdfFunction function_of_pairs(const Device& device, const Reflectance& reflectance, Precision precision) {
   const Material* formula = reflectance.formula();
-  return formula != nullptr ? function_of_formula(device, smooth_part(*formula), precision)
+  return formula != nullptr ? kept_function(device, smooth_part(*formula), precision, NodeMaking::quickly)
                             : smooth_function(device, reflectance, precision);
 }
 

@@ -154,6 +154,7 @@ ShardReport run_shard(const Device& device, const Study& study, const Shard& sha
   report.file = directory / (stem + std::string(kShardEnding));
   const OutputLock lock(directory / stem, "shard");
   const PlanIdentity identity = plan_identity(study, device);
+  RecordFile checkpoint(directory / (stem + ".checkpoint"));
   std::error_code ignored;
   if (!options.overwrite && fs::exists(report.file, ignored)) {
     const ShardFile file(report.file);
@@ -166,12 +167,13 @@ ShardReport run_shard(const Device& device, const Study& study, const Shard& sha
                                 report.file.string(), foreign),
                     {.fault = Fault::existing_file, .path = report.file.string()});
     }
+    // Left where the run that wrote the shard was killed before it removed it.
+    checkpoint.open(identity.text(), study.materials.size());
+    checkpoint.remove();
     report.was_complete = true;
     report.units = file.records();
     return report;
   }
-
-  RecordFile checkpoint(directory / (stem + ".checkpoint"));
   if (options.keeps_units) checkpoint.open(identity.text(), study.materials.size());
   ShardRecords records(options.keeps_units ? &checkpoint : nullptr);
   StudyComputation computation(device, study, records.store(), options.progress);
