@@ -171,6 +171,7 @@ RoundingShares shares_of_rounding(Eigen::Index terms, bool cancels) {
     const auto share = [](double value, Exact expected, double error) {
       return std::abs(static_cast<double>(static_cast<Exact>(value) - expected)) / error;
     };
+    EXPECT_TRUE(found.gram.allFinite() && found.squared_distance.allFinite()) << k;
     largest.gram = std::max(largest.gram, share(found.gram(1, 2), product, found.gram_error(1, 2)));
     largest.squared_distance = std::max(
         largest.squared_distance, share(found.squared_distance(1, 2), square, found.squared_distance_error(1, 2)));

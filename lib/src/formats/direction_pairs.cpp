@@ -7,7 +7,6 @@
 #include <charconv>
 #include <exception>
 #include <functional>
-#include <memory>
 #include <numbers>
 #include <optional>
 #include <span>

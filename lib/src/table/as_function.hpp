@@ -13,8 +13,8 @@ namespace lobe {
 /// \param material prepared
 [[nodiscard]] BrdfFunction as_function(const Device& device, const Material& material,
                                        Precision precision = Precision::double_precision);
-/// The same, with what it needs on the device made once and kept as long as it lives: for few at a time that are asked
-/// often.
+/// The same, with what it needs on the device made once and kept as long as it lives: for few functions at a time that
+/// are asked often.
 [[nodiscard]] BrdfFunction kept_function(const Device& device, const Material& material, Precision precision,
                                          NodeMaking making);
 [[nodiscard]] BrdfFunction as_function(const BrdfTable& table);

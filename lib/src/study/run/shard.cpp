@@ -167,9 +167,11 @@ ShardReport run_shard(const Device& device, const Study& study, const Shard& sha
                                 report.file.string(), foreign),
                     {.fault = Fault::existing_file, .path = report.file.string()});
     }
-    // Left where the run that wrote the shard was killed before it removed it.
-    checkpoint.open(identity.text(), study.materials.size());
-    checkpoint.remove();
+    // A run that was killed after it had written the shard left it.
+    if (options.keeps_units) {
+      checkpoint.open(identity.text(), study.materials.size());
+      checkpoint.remove();
+    }
     report.was_complete = true;
     report.units = file.records();
     return report;
