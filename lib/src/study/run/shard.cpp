@@ -155,6 +155,7 @@ ShardReport run_shard(const Device& device, const Study& study, const Shard& sha
   const OutputLock lock(directory / stem, "shard");
   const PlanIdentity identity = plan_identity(study, device);
   RecordFile checkpoint(directory / (stem + ".checkpoint"));
+  if (options.keeps_units) checkpoint.open(identity.text(), study.materials.size());
   std::error_code ignored;
   if (!options.overwrite && fs::exists(report.file, ignored)) {
     const ShardFile file(report.file);
@@ -167,16 +168,11 @@ ShardReport run_shard(const Device& device, const Study& study, const Shard& sha
                                 report.file.string(), foreign),
                     {.fault = Fault::existing_file, .path = report.file.string()});
     }
-    // A run that was killed after it had written the shard left it.
-    if (options.keeps_units) {
-      checkpoint.open(identity.text(), study.materials.size());
-      checkpoint.remove();
-    }
+    checkpoint.remove();  // a run that was killed after it had written the shard left it
     report.was_complete = true;
     report.units = file.records();
     return report;
   }
-  if (options.keeps_units) checkpoint.open(identity.text(), study.materials.size());
   ShardRecords records(options.keeps_units ? &checkpoint : nullptr);
   StudyComputation computation(device, study, records.store(), options.progress);
   const auto units = computation.units();
