@@ -145,8 +145,10 @@ RoundingShares shares_of_rounding(Eigen::Index terms, bool cancels) {
   std::uniform_int_distribution<int> whole(-8, 8);
   std::uniform_real_distribution<double> number(0, 1);
   for (int k = 0; k < kSums; ++k) {
+    // Where factors cancel, norms are far larger than distances.
+    const double offset = cancels ? 1000 : 0;
     const MatrixXd columns =
-        MatrixXd::NullaryExpr(kLength, terms + 1, [&] { return static_cast<double>(whole(generator)); });
+        MatrixXd::NullaryExpr(kLength, terms + 1, [&] { return offset + static_cast<double>(whole(generator)); });
     MatrixXd factors = MatrixXd::NullaryExpr(2, terms, [&] { return number(generator); });
     // Members whose factors have almost the same sum.
     if (cancels) factors(1, 0) += factors.row(0).sum() - factors.row(1).sum() + 1e-9 * number(generator);

@@ -56,7 +56,9 @@ UnitTerms unit_terms(std::span<const Material> materials, std::size_t channels) 
 }
 
 ChannelProducts products_of_sums(const ChannelProducts& products, const MatrixXd& factors) {
-  constexpr double kRounding = 8e-16;  // of each term of a sum; up to 6.1e-16 in 180 000 sums
+  // Of each term of a sum. Up to 6.1e-16 in 180 000 sums of squared distances, 8.4e-16 in 18 000 of products.
+  constexpr double kRounding = 8e-16;
+  constexpr double kProductRounding = 16e-16;
   const Index n = factors.rows() + 1;
   MatrixXd sums = MatrixXd::Zero(n, factors.cols() + 1);
   sums(0, 0) = 1;
@@ -71,7 +73,7 @@ ChannelProducts products_of_sums(const ChannelProducts& products, const MatrixXd
           if (share == 0) continue;
           result.gram(i, j) += share * products.gram(k, l);
           result.gram_error(i, j) +=
-              std::abs(share) * (products.gram_error(k, l) + kRounding * std::abs(products.gram(k, l)));
+              std::abs(share) * (products.gram_error(k, l) + kProductRounding * std::abs(products.gram(k, l)));
         }
       }
       result.gram(j, i) = result.gram(i, j);
