@@ -64,7 +64,8 @@ Row row_of(const std::string& model) {
 /// Albedos to a hundredth at few angles, values as for the page; for the costliest models the materials that come
 /// first.
 const CatalogueOptions kLittle{
-    .material = {.tolerance = 1e-2, .pairs = 1024, .angles = 7, .azimuths = 2, .levels = 3, .with_mean_albedo = false},
+    .material =
+        {.tolerance = 1e-2, .pairs = 1024, .angles = 7, .azimuths = 2, .most_nodes = 50'000, .with_mean_albedo = false},
     .random = 0,
     .nodes = 1'500'000,
     .is_pursued = false};

@@ -240,7 +240,7 @@ TEST_P(Verbs, LargestAlbedoIsTheLargestOfItsAlbedosOrRefused) {
 
 TEST_P(Verbs, PlausibilityIsThatOfItsKind) {
   const PlausibilityOptions options{
-      .tolerance = 1e-3, .pairs = 256, .angles = 7, .azimuths = 2, .levels = 4, .with_mean_albedo = false};
+      .tolerance = 1e-3, .pairs = 256, .angles = 7, .azimuths = 2, .most_nodes = 100'000, .with_mean_albedo = false};
   const Plausibility found = check_plausibility(device(), subject_.given, options);
   const Reflectance& known = subject_.known;
   const Plausibility expected = known.formula() != nullptr    ? check_plausibility(device(), *known.formula(), options)

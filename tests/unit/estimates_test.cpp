@@ -20,6 +20,7 @@
 #include "compare/comparison_measure.hpp"
 #include "compare/comparison_result.hpp"
 #include "device/rounding.hpp"
+#include "energy/adaptive_albedo.hpp"
 #include "energy/albedo.hpp"
 #include "energy/material_albedo.hpp"
 #include "hemisphere/gauss.hpp"
@@ -438,6 +439,27 @@ TEST(RefinedValues, EndWhereTheWorstRelativeErrorIsTolerable) {
   EXPECT_NEAR(result.values[0].error, 2 * 0.25e-3, 1e-15);
   EXPECT_NEAR(result.worst, 0.5 / 1.75, 1e-12);
   EXPECT_FALSE(refine(at_level, "", make_material("lambert"), 0, 0.1, 3).is_reached);
+}
+
+// One direction that had taken all its nodes kept the others from being tried again.
+TEST(AlbedosWithinATolerance, AreTriedAgainButThoseWithoutNodesLeft) {
+  std::vector<std::vector<std::size_t>> asked;
+  const AlbedosAtGoal albedos_at = [&](std::span<const std::size_t> some, double goal) {
+    asked.emplace_back(some.begin(), some.end());
+    const auto count = static_cast<Eigen::Index>(some.size());
+    AlbedoValues found{Eigen::ArrayXXd::Ones(1, count), Eigen::ArrayXXd::Constant(1, count, 5 * goal),
+                       Eigen::ArrayXXd::Ones(1, count), Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(count, false)};
+    for (Eigen::Index k = 0; k < count; ++k) found.is_exhausted(k) = some[static_cast<std::size_t>(k)] == 0;
+    return found;
+  };
+
+  const std::vector<AlbedoOutcome> found = within(albedos_at, 2, 1e-4, 1e-12);
+
+  EXPECT_EQ(asked, (std::vector<std::vector<std::size_t>>{{0, 1}, {1}}));
+  EXPECT_FALSE(found[0].is_reached);
+  EXPECT_TRUE(found[1].is_reached);
+  expect_near(found[0].worst, 5e-4 + 1e-12);
+  expect_near(found[1].worst, 5e-5 + 1e-12);
 }
 
 /// A part by rules of 4, 8, ... nodes.

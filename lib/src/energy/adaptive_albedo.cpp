@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "device/evaluate_lobes.hpp"
@@ -17,6 +18,7 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::ArrayXXd;
 using Eigen::Index;
+using ArrayXb = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
 constexpr std::size_t kArcsPerBlock = 400;  // as many as make a launch cheap beside the work
 constexpr double kPanelSafety = 2;          // of error estimates: kinks near the ends of a panel are hardly seen
@@ -49,7 +51,45 @@ void append_panels(const std::vector<PanelEdge>& edges, std::size_t owner, std::
   for (std::size_t k = 0; k + 1 < edges.size(); ++k) panels.push_back({owner, edges[k], edges[k + 1]});
 }
 
+/// \param column of the values
+AlbedoOutcome outcome_of(const AlbedoValues& found, Index column, double rounding, double goal) {
+  constexpr double kUnsettled = 0.1;
+  AlbedoOutcome outcome;
+  outcome.is_finite = found.value.col(column).isFinite().all();
+  for (Index c = 0; c < found.value.rows(); ++c) {
+    const double value = found.value(c, column);
+    const double error = found.error(c, column) + rounding * found.magnitude(c, column);
+    outcome.values.push_back({value, error});
+    if (error > 0) outcome.worst = std::max(outcome.worst, error / std::abs(value));
+    if (error > kUnsettled * found.magnitude(c, column)) outcome.is_divergent = true;
+  }
+  outcome.is_reached = outcome.worst <= goal;
+  return outcome;
+}
+
 }  // namespace
+
+std::vector<AlbedoOutcome> within(const AlbedosAtGoal& albedos_at, std::size_t count, double tolerance,
+                                  double rounding) {
+  constexpr int kAttempts = 3;
+  const double goal = std::max(tolerance, 2 * rounding);
+  std::vector<AlbedoOutcome> outcomes(count);
+  std::vector<std::size_t> open(count);
+  std::iota(open.begin(), open.end(), std::size_t{0});
+  double strictness = 1;
+  for (int attempt = 1; attempt <= kAttempts && !open.empty(); ++attempt, strictness *= 0.1) {
+    const AlbedoValues found = albedos_at(open, strictness * goal);
+    std::vector<std::size_t> unmet;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      AlbedoOutcome& outcome = outcomes[open[i]];
+      outcome = outcome_of(found, static_cast<Index>(i), rounding, goal);
+      const bool is_exhausted = found.is_exhausted(static_cast<Index>(i));
+      if (outcome.is_finite && !outcome.is_reached && !is_exhausted) unmet.push_back(open[i]);
+    }
+    open = std::move(unmet);
+  }
+  return outcomes;
+}
 
 /// Adaptive quadrature of the lobes of a part at some directions.
 class AdaptiveAlbedo::Integral {
@@ -70,16 +110,19 @@ class AdaptiveAlbedo::Integral {
   AlbedoValues result() {
     const auto count = static_cast<Index>(incident_.size());
     const ArrayXXd zero = ArrayXXd::Zero(channels_, count);
-    values_ = {zero, zero, zero, false};
+    values_ = {zero, zero, zero, ArrayXb::Constant(count, false)};
     scale_ = zero;
     std::vector<Panel> bands;
     for (std::size_t k = 0; k < incident_.size(); ++k) append_panels(outer_panels(incident_[k]), k, bands);
     first_bands_.assign(incident_.size(), 0);
     for (const Panel& band : bands) ++first_bands_[band.owner];
     while (!bands.empty()) bands = settle(bands);
-    values_.is_exhausted = std::ranges::any_of(nodes_, [&](std::size_t nodes) { return nodes > most_nodes_; });
+    for (Index k = 0; k < count; ++k) values_.is_exhausted(k) = nodes_[static_cast<std::size_t>(k)] > most_nodes_;
     return values_;
   }
+
+  /// Spent on all directions.
+  [[nodiscard]] std::uint64_t nodes() const { return std::accumulate(nodes_.begin(), nodes_.end(), std::uint64_t{0}); }
 
  private:
   [[nodiscard]] bool is_flat() const { return part_.rays == Rays::none; }
@@ -135,7 +178,8 @@ class AdaptiveAlbedo::Integral {
       const ArrayXd error = inner_error.middleCols(band * count, count).rowwise().sum();
       const std::size_t owner = bands[b].owner;
       const auto column = static_cast<Index>(owner);
-      if (is_accurate(value, outer, column, first_bands_[owner]) || !can_be_halved(bands[b]) ||
+      const bool is_finite = value.isFinite().all();  // else the whole is not, either
+      if (!is_finite || is_accurate(value, outer, column, first_bands_[owner]) || !can_be_halved(bands[b]) ||
           nodes_[owner] > most_nodes_) {
         values_.value.col(column) += value;
         values_.magnitude.col(column) += value.abs();
@@ -285,18 +329,20 @@ AdaptiveAlbedo::AdaptiveAlbedo(const Device& device, const Material& material, P
 AlbedoValues AdaptiveAlbedo::at(std::span<const IncidentNode> incident, double goal, std::size_t most_nodes) {
   const auto count = static_cast<Index>(incident.size());
   const ArrayXXd zero = ArrayXXd::Zero(static_cast<Index>(lobes_.channels()), count);
-  AlbedoValues all{zero, zero, zero, false};
+  AlbedoValues all{zero, zero, zero, ArrayXb::Constant(count, false)};
   const LobeExtent extent = lobes_.extent();
   for (std::size_t first = 0; first < incident.size(); first += kTogether) {
     const auto some = incident.subspan(first, std::min(kTogether, incident.size() - first));
     const auto begin = static_cast<Index>(first);
     const auto size = static_cast<Index>(some.size());
     for (Part& part : parts_) {
-      const AlbedoValues values = Integral(part, half_vectors_, extent, some, goal, most_nodes).result();
+      Integral integral(part, half_vectors_, extent, some, goal, most_nodes);
+      const AlbedoValues values = integral.result();
+      nodes_ += integral.nodes();
       all.value.middleCols(begin, size) += values.value;
       all.error.middleCols(begin, size) += values.error;
       all.magnitude.middleCols(begin, size) += values.magnitude;
-      all.is_exhausted = all.is_exhausted || values.is_exhausted;
+      all.is_exhausted.segment(begin, size) = all.is_exhausted.segment(begin, size) || values.is_exhausted;
     }
   }
   if (!lobes_.deltas.empty()) {
@@ -313,6 +359,16 @@ AlbedoValues AdaptiveAlbedo::at(std::span<const IncidentNode> incident, double g
     }
   }
   return all;
+}
+
+std::vector<AlbedoOutcome> AdaptiveAlbedo::within(std::span<const IncidentNode> incident, double tolerance,
+                                                  std::size_t most_nodes) {
+  const AlbedosAtGoal albedos_at = [&](std::span<const std::size_t> some, double goal) {
+    std::vector<IncidentNode> nodes;
+    for (const std::size_t k : some) nodes.push_back(incident[k]);
+    return at(nodes, goal, most_nodes);
+  };
+  return lobe::within(albedos_at, incident.size(), tolerance, rounding_);
 }
 
 }  // namespace lobe

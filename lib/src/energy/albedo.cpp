@@ -2,7 +2,6 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "core/text.hpp"
@@ -21,35 +20,13 @@ std::string degrees(double radians) {
   return shortest(to_degrees(radians)) + " degrees";
 }
 
-/// Estimates of all channels and how far they are from the tolerance.
-struct Outcome {
-  std::vector<Estimate> values;
-  double worst = 0;           ///< largest relative error
-  bool is_divergent = false;  ///< refinement has not even settled the size
-};
-
-/// \param column of the values
-Outcome outcome_of(const AlbedoValues& found, Eigen::Index column, double rounding) {
-  constexpr double kUnsettled = 0.1;
-  Outcome outcome;
-  for (Eigen::Index c = 0; c < found.value.rows(); ++c) {
-    const double value = found.value(c, column);
-    const double error = found.error(c, column) + rounding * found.magnitude(c, column);
-    outcome.values.push_back({value, error});
-    if (error > 0) outcome.worst = std::max(outcome.worst, error / std::abs(value));
-    if (error > kUnsettled * found.magnitude(c, column)) outcome.is_divergent = true;
-  }
-  return outcome;
-}
-
-void require_finite(const AlbedoValues& found, const std::string& what, const Material& material) {
-  if (found.value.isFinite().all()) return;
+[[noreturn]] void refuse_not_finite(const std::string& what, const Material& material) {
   throw NumericError(what + " of '" + material.name + "' is no finite number");
 }
 
 /// Tells `options.missed` where an outcome misses the tolerance.
 /// \throws NumericError where not even its size is known: it may be infinite
-void tell_missed(const Outcome& outcome, MissedTolerance missed, const Material& material,
+void tell_missed(const AlbedoOutcome& outcome, MissedTolerance missed, const Material& material,
                  const AlbedoOptions& options) {
   missed.quantity += " of '" + material.name + "'";
   missed.relative_error = outcome.worst;
@@ -114,7 +91,7 @@ class AdaptiveMean {
       integrate(waiting);
       done.insert(done.end(), waiting.begin(), waiting.end());
       AlbedoValues sums{done.front().value, done.front().difference + done.front().error, done.front().magnitude,
-                        is_exhausted_};
+                        Eigen::Array<bool, 1, 1>(is_exhausted_)};
       for (std::size_t k = 1; k < done.size(); ++k) {
         sums.value += done[k].value;
         sums.error += done[k].difference + done[k].error;
@@ -133,7 +110,7 @@ class AdaptiveMean {
     const Eigen::ArrayXd allowed = kShare * goal_ * sums.value.col(0).abs();
     Eigen::ArrayXd total = Eigen::ArrayXd::Zero(allowed.size());
     for (const MeanPanel& panel : panels) total += panel.difference;
-    if ((total <= allowed).all() || panels.size() > kMostPanels || sums.is_exhausted) return {};
+    if ((total <= allowed).all() || panels.size() > kMostPanels || is_exhausted_) return {};
     std::vector<MeanPanel> halves;
     std::vector<MeanPanel> kept;
     for (const MeanPanel& panel : panels) {
@@ -164,7 +141,7 @@ class AdaptiveMean {
       }
     }
     const AlbedoValues albedos = integral_.at(incident, kInner * goal_, kMostNodesOfMean);
-    is_exhausted_ = is_exhausted_ || albedos.is_exhausted;
+    is_exhausted_ = is_exhausted_ || albedos.is_exhausted.any();
     for (std::size_t p = 0; p < panels.size(); ++p) {
       MeanPanel& panel = panels[p];
       panel.value = panel.error = panel.magnitude = Eigen::ArrayXd::Zero(albedos.value.rows());
@@ -188,8 +165,6 @@ class AdaptiveMean {
   bool is_exhausted_ = false;
 };
 
-constexpr int kAttempts = 3;  // each ten times stricter, for sums that cancel or whose size was misjudged
-
 }  // namespace
 
 std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
@@ -212,32 +187,15 @@ std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& 
 
   constexpr std::size_t kMostNodes = 1'000'000;  // per direction
   AdaptiveAlbedo integral(device, material, options.precision);
-  const double goal = std::max(options.tolerance, 2 * integral.rounding());
-  std::vector<std::size_t> open(directions.size());
-  std::iota(open.begin(), open.end(), 0U);
-  double strictness = 1;
-  for (int attempt = 1; !open.empty(); ++attempt, strictness *= 0.1) {
-    std::vector<IncidentNode> incident;
-    for (const std::size_t k : open) {
-      incident.push_back({std::numbers::pi / 2 - directions[k].theta, 1, directions[k].phi});
-    }
-    const AlbedoValues found = integral.at(incident, strictness * goal, kMostNodes);
-    std::vector<std::size_t> unmet;
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      const std::size_t k = open[i];
-      const std::string what = "albedo at " + degrees(directions[k].theta);
-      const auto column = static_cast<Eigen::Index>(i);
-      require_finite({found.value.col(column), {}, {}, false}, what, material);
-      const Outcome outcome = outcome_of(found, column, integral.rounding());
-      for (std::size_t c = 0; c < result.size(); ++c) result[c][k] = outcome.values[c];
-      if (outcome.worst <= goal) continue;
-      if (attempt == kAttempts || found.is_exhausted) {
-        tell_missed(outcome, {.quantity = what, .index = k}, material, options);
-      } else {
-        unmet.push_back(k);
-      }
-    }
-    open = std::move(unmet);
+  std::vector<IncidentNode> incident;
+  for (const auto& [theta, phi] : directions) incident.push_back({std::numbers::pi / 2 - theta, 1, phi});
+  const auto outcomes = integral.within(incident, options.tolerance, kMostNodes);
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const AlbedoOutcome& outcome = outcomes[k];
+    const std::string what = "albedo at " + degrees(directions[k].theta);
+    if (!outcome.is_finite) refuse_not_finite(what, material);
+    for (std::size_t c = 0; c < result.size(); ++c) result[c][k] = outcome.values[c];
+    if (!outcome.is_reached) tell_missed(outcome, {.quantity = what, .index = k}, material, options);
   }
   return result;
 }
@@ -245,16 +203,13 @@ std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& 
 std::vector<Estimate> mean_albedo(const Device& device, const Material& material, const AlbedoOptions& options) {
   AdaptiveAlbedo adaptive(device, material, options.precision);
   if (adaptive.is_isotropic()) {
-    const double goal = std::max(options.tolerance, 2 * adaptive.rounding());
-    double strictness = 1;
-    for (int attempt = 1;; ++attempt, strictness *= 0.1) {
-      const AlbedoValues found = AdaptiveMean(adaptive, strictness * goal).result();
-      require_finite(found, "mean albedo", material);
-      Outcome outcome = outcome_of(found, 0, adaptive.rounding());
-      if (outcome.worst > goal && attempt < kAttempts && !found.is_exhausted) continue;
-      if (outcome.worst > goal) tell_missed(outcome, {.quantity = "mean albedo"}, material, options);
-      return std::move(outcome.values);
-    }
+    const AlbedosAtGoal mean_at = [&](std::span<const std::size_t>, double goal) {
+      return AdaptiveMean(adaptive, goal).result();
+    };
+    AlbedoOutcome outcome = within(mean_at, 1, options.tolerance, adaptive.rounding()).front();
+    if (!outcome.is_finite) refuse_not_finite("mean albedo", material);
+    if (!outcome.is_reached) tell_missed(outcome, {.quantity = "mean albedo"}, material, options);
+    return std::move(outcome.values);
   }
   MaterialAlbedo integral(device, material, options.precision);
   const auto at_level = [&](int level) {

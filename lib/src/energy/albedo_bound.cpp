@@ -10,7 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "energy/material_albedo.hpp"
+#include "energy/adaptive_albedo.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {
@@ -18,10 +19,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kRoughBound = 1e-3;  // relative error of albedos that only tell where to look
-
-/// Of the tolerance: what the error of the largest albedo is more than stated where levels of quadrature agree by
-/// accident. Tobler's models at 1e-3 need 0.001.
-constexpr double kAccident = 0.01;
 
 /// A direction of incidence and the albedos there by channel.
 struct Sample {
@@ -52,7 +49,7 @@ class BoundSearch {
     bounds.incident = incident_;
     bounds.unresolved = unresolved_;
     bounds.least_elevation = grazing_.back();
-    bounds.nodes = integral_.work().nodes;
+    bounds.nodes = integral_.nodes();
     return bounds;
   }
 
@@ -60,18 +57,14 @@ class BoundSearch {
   /// Albedos where light comes from these places, all at once: a device has less to wait for than by one after another.
   std::vector<Sample> samples_at(std::span<const Place> places, double tolerance) {
     std::vector<IncidentNode> incident;
-    const auto at_level = [&](std::span<const std::size_t> some, int level) -> Eigen::MatrixXd {
-      incident.clear();
-      for (const std::size_t k : some) incident.push_back({places[k].elevation, 1, places[k].azimuth});
-      return integral_.at(incident, level);
-    };
+    for (const Place& place : places) incident.push_back({place.elevation, 1, place.azimuth});
     incident_ += places.size();
-    auto found =
-        refine_each(at_level, places.size(), "albedo", material_, integral_.rounding(), tolerance, options_.levels);
     std::vector<Sample> samples;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      if (!found[k].is_reached) ++unresolved_;
-      samples.push_back({places[k].elevation, places[k].azimuth, std::move(found[k].values)});
+    for (AlbedoOutcome& outcome : integral_.within(incident, tolerance, options_.most_nodes)) {
+      if (!outcome.is_finite) throw NumericError("albedo of '" + material_.name + "' is no finite number");
+      if (!outcome.is_reached) ++unresolved_;
+      const Place& place = places[samples.size()];
+      samples.push_back({place.elevation, place.azimuth, std::move(outcome.values)});
     }
     return samples;
   }
@@ -134,6 +127,10 @@ class BoundSearch {
     return sample.albedos[channel].value - sample.albedos[channel].error;
   }
 
+  void note_upper(const Sample& sample, std::size_t channel) {
+    upper_ = std::max(upper_, sample.albedos[channel].value + sample.albedos[channel].error);
+  }
+
   const Sample& highest(std::size_t channel) const {
     return *std::ranges::max_element(samples_, {}, [&](const Sample& one) { return certain(one, channel); });
   }
@@ -143,9 +140,12 @@ class BoundSearch {
     AlbedoBound bound{top.albedos[channel], {pi / 2 - top.elevation, top.azimuth}, growth(channel)};
     if (bound.growth) return bound;
     sharpen_candidates(channel);
+    upper_ = 0;
+    for (const Sample& sample : samples_) note_upper(sample, channel);
     const Sample best = refined(highest(channel), channel);
     bound.largest = best.albedos[channel];
-    bound.largest.error += change_ + kAccident * options_.tolerance * std::abs(bound.largest.value);
+    // An albedo that is less certain may be larger.
+    bound.largest.error = std::max(bound.largest.error, upper_ - bound.largest.value) + change_;
     bound.at = {pi / 2 - best.elevation, best.azimuth};
     return bound;
   }
@@ -217,6 +217,7 @@ class BoundSearch {
       std::vector<double> values;
       for (Sample& one : samples_at(places, options_.tolerance)) {
         values.push_back(one.albedos[channel].value);
+        note_upper(one, channel);
         if (certain(one, channel) > certain(best, channel)) best = std::move(one);
       }
       return values;
@@ -230,14 +231,15 @@ class BoundSearch {
   }
 
   const Material& material_;
-  MaterialAlbedo integral_;
+  AdaptiveAlbedo integral_;
   const PlausibilityOptions& options_;
   double turn_;                  // after which albedos are the same
   std::size_t azimuths_;         // over that
   double step_ = 0;              // between the angles of the scan
   std::vector<double> grazing_;  // elevations, falling
   std::vector<Sample> samples_;  // the scan, then the grazing ones by azimuth
-  double change_ = 0;
+  double change_ = 0;            // by the last round of the search
+  double upper_ = 0;             // how large an albedo may be at most, of those looked at
   std::size_t incident_ = 0;
   std::size_t unresolved_ = 0;
 };

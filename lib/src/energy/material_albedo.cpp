@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <utility>
 
 #include "lobe/core/error.hpp"
 
@@ -35,48 +33,25 @@ Eigen::MatrixXd MaterialAlbedo::at(std::span<const IncidentNode> incident, int l
 
 Refined refine(const std::function<Eigen::ArrayXd(int)>& at_level, const std::string& what, const Material& material,
                double floor, double tolerance, int levels) {
-  const auto one_at_level = [&](std::span<const std::size_t>, int level) -> Eigen::MatrixXd { return at_level(level); };
-  return refine_each(one_at_level, 1, what, material, floor, tolerance, levels).front();
-}
-
-std::vector<Refined> refine_each(const SomeAtLevel& at_level, std::size_t count, const std::string& what,
-                                 const Material& material, double floor, double tolerance, int levels) {
   constexpr double kEarlier = 0.1;
   constexpr double kSafety = 2;
   const double goal = std::max(tolerance, 2 * floor);
-  std::vector<Refined> results(count);
-  std::vector<std::size_t> rest(count);
-  std::iota(rest.begin(), rest.end(), std::size_t{0});
-  if (count == 0) return results;
-  Eigen::MatrixXd coarse = at_level(rest, 0);
-  Eigen::MatrixXd earlier = Eigen::MatrixXd::Zero(coarse.rows(), coarse.cols());
-  for (int level = 1; !rest.empty(); ++level) {
-    const Eigen::MatrixXd found = at_level(rest, level);
-    std::vector<std::size_t> coarser;
-    std::vector<Eigen::Index> columns;
-    for (std::size_t k = 0; k < rest.size(); ++k) {
-      const auto column = static_cast<Eigen::Index>(k);
-      const Eigen::ArrayXd fine = found.col(column);
-      if (!fine.isFinite().all()) throw NumericError(what + " of '" + material.name + "' is no finite number");
-      const Eigen::ArrayXd difference = (fine - coarse.col(column).array()).abs();
-      const Eigen::ArrayXd error =
-          kSafety * difference.max(kEarlier * earlier.col(column).array()) + floor * fine.abs();
-      const double worst = (fine != 0).select(error / fine.abs(), 0.0).maxCoeff();
-      if (worst <= goal || level + 1 == levels) {
-        Refined& result = results[rest[k]];
-        result = {{}, worst, worst <= goal};
-        for (Eigen::Index c = 0; c < fine.size(); ++c) result.values.push_back({fine(c), error(c)});
-        continue;
-      }
-      earlier.col(column) = difference;
-      coarser.push_back(rest[k]);
-      columns.push_back(column);
+  Eigen::ArrayXd coarse = at_level(0);
+  Eigen::ArrayXd earlier = Eigen::ArrayXd::Zero(coarse.size());
+  for (int level = 1;; ++level) {
+    const Eigen::ArrayXd fine = at_level(level);
+    if (!fine.isFinite().all()) throw NumericError(what + " of '" + material.name + "' is no finite number");
+    const Eigen::ArrayXd difference = (fine - coarse).abs();
+    const Eigen::ArrayXd error = kSafety * difference.max(kEarlier * earlier) + floor * fine.abs();
+    const double worst = (fine != 0).select(error / fine.abs(), 0.0).maxCoeff();
+    if (worst <= goal || level + 1 == levels) {
+      Refined result{{}, worst, worst <= goal};
+      for (Eigen::Index c = 0; c < fine.size(); ++c) result.values.push_back({fine(c), error(c)});
+      return result;
     }
-    earlier = Eigen::MatrixXd(earlier(Eigen::all, columns));
-    coarse = found(Eigen::all, columns);
-    rest = std::move(coarser);
+    earlier = difference;
+    coarse = fine;
   }
-  return results;
 }
 
 }  // namespace lobe

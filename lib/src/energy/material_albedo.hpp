@@ -58,11 +58,4 @@ struct Refined {
 [[nodiscard]] Refined refine(const std::function<Eigen::ArrayXd(int)>& at_level, const std::string& what,
                              const Material& material, double floor, double tolerance, int levels);
 
-/// Values of some of many, channels x these, at a level of refinement.
-using SomeAtLevel = std::function<Eigen::MatrixXd(std::span<const std::size_t> some, int level)>;
-
-/// As refine(), each of many to its own level; those of one level are asked for together.
-[[nodiscard]] std::vector<Refined> refine_each(const SomeAtLevel& at_level, std::size_t count, const std::string& what,
-                                               const Material& material, double floor, double tolerance, int levels);
-
 }  // namespace lobe

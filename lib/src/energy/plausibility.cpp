@@ -11,7 +11,6 @@
 #include "energy/function_bound.hpp"
 #include "energy/known_as.hpp"
 #include "energy/value_search.hpp"
-#include "hemisphere/refinement.hpp"
 #include "lobe/core/error.hpp"
 #include "model/delta_shares.hpp"
 #include "model/lobes.hpp"
@@ -37,9 +36,7 @@ void check(const PlausibilityOptions& options) {
   if (!(options.tolerance > 0 && options.tolerance < 1)) {
     throw ArgumentError("the tolerance of a check is out of range; expected a value in (0, 1)");
   }
-  if (options.levels < 2 || options.levels > kLevels) {
-    throw ArgumentError("the levels of a check are out of range; expected 2 to " + std::to_string(kLevels));
-  }
+  if (options.most_nodes == 0) throw ArgumentError("a check may use no quadrature nodes; expected at least 1");
   if (options.pairs < 4 || options.angles < 3 || options.azimuths < 1) {
     throw ArgumentError("a check looks at too few directions; expected at least 4 pairs, 3 angles and 1 azimuth");
   }

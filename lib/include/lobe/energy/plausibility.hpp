@@ -29,8 +29,8 @@ struct PlausibilityOptions {
   /// For anisotropic materials over half a turn; for functions, and materials that half a turn about the normal
   /// changes, twice as many over a turn.
   std::size_t azimuths = 6;
-  int levels = 9;                ///< refinement levels of albedos, at most; 2 to 9
-  bool with_mean_albedo = true;  ///< whether to compute the mean albedo (white furnace), too
+  std::size_t most_nodes = 1'000'000;  ///< quadrature nodes for each albedo, at least 1; some more are used at the end
+  bool with_mean_albedo = true;        ///< whether to compute the mean albedo (white furnace), too
 };
 
 /// The difference between f(L, V) and f(V, L).
@@ -95,8 +95,7 @@ struct Plausibility {
 /// about the retro direction and at grazing angles (with distances spread logarithmically from 1e-6 to 1), then around
 /// the eight worst in boxes that shrink from 0.3 to 1e-5 rad. Albedos are checked at `angles` angles, then at
 /// elevations that fall by half powers of 10 down to 1e-7, or for lobes of width w (radians) to w^2/100, at least
-/// 1e-12; then around the largest one, whose error counts as at least a hundredth of the tolerance, because levels of
-/// quadrature may agree by accident. The growth is the exponent between the last two powers of 10, if it is above its
+/// 1e-12; then around the largest one. The growth is the exponent between the last two powers of 10, if it is above its
 /// error, which is the difference from the exponent before.
 ///
 /// Tables. Values, differences across the diagonal, and albedos of the rows are checked with their errors; unknown
@@ -133,7 +132,7 @@ struct ModelPlausibility {
 struct CatalogueOptions {
   PlausibilityOptions material{
       ///< how each material is looked at
-      .tolerance = 1e-3, .pairs = 1024, .angles = 13, .azimuths = 3, .levels = 4, .with_mean_albedo = false};
+      .tolerance = 1e-3, .pairs = 1024, .angles = 13, .azimuths = 3, .most_nodes = 100'000, .with_mean_albedo = false};
   std::size_t random = 4;  ///< materials at random places in the ranges, beside those at the ends
   /// Quadrature nodes after which no further material of a model is begun.
   std::uint64_t nodes = std::numeric_limits<std::uint64_t>::max();

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "energy/material_albedo.hpp"
+#include "energy/albedo.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
@@ -20,7 +20,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int kMostLevels = 6;       // of albedos of formulas; their errors say what that leaves
 constexpr double kLobeWidth = 0.02;  // of functions, radians: curves are for the eye, and errors say what it costs
 
 /// Rounding of models in double precision: a few hundred times what their files state.
@@ -58,25 +57,14 @@ Estimate entry(const BrdfValues& values, std::size_t pair, std::size_t channel) 
   return {value, values.error.size() > 0 ? values.error(i, c) : kRounding * std::abs(value)};
 }
 
-/// All angles at once: a device has less to wait for than by albedo(), which refines one after the other.
 std::vector<std::vector<Estimate>> albedos_of(const Device& device, const Material& material,
                                               std::span<const double> theta) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::vector<Estimate>> albedos(material.channels(), std::vector<Estimate>(theta.size(), {kNaN, kNaN}));
-  std::vector<IncidentNode> incident;
-  for (const double angle : theta) incident.push_back({pi / 2 - angle, 1, 0});
-  MaterialAlbedo integral(device, material, Precision::double_precision);
-  const auto at_level = [&](int level) -> Eigen::ArrayXd { return integral.at(incident, level).reshaped().array(); };
   try {
-    const Refined found = refine(at_level, "albedo", material, integral.rounding(), kCurveAlbedoTolerance, kMostLevels);
-    std::size_t at = 0;
-    for (std::size_t k = 0; k < theta.size(); ++k) {
-      for (auto& channel : albedos) channel[k] = found.values[at++];
-    }
-  } catch (const NumericError&) {
-    // Some are infinite.
+    return albedo(device, material, theta, {.tolerance = kCurveAlbedoTolerance});
+  } catch (const NumericError&) {  // some are infinite
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    return {material.channels(), std::vector<Estimate>(theta.size(), {kNaN, kNaN})};
   }
-  return albedos;
 }
 
 MaterialCurves curves_of(const Device& device, const Material& material, const CurveAngles& angles) {
