@@ -408,6 +408,22 @@ TEST_F(Rgl, OfAQuarterTurnHasTheValuesOfAnIndependentEvaluation) {
   expect_reference_values(path(), twenty_geometries(), 4);
 }
 
+// What is known of a light is kept for the next pair with it: one of another azimuth alone is another light.
+TEST_F(Rgl, HasTheValuesOfAnIndependentEvaluationForLightsThatComeAgain) {
+  std::vector<Directions> pairs;
+  for (const double theta : {0.4, 1.2}) {
+    for (const double phi : {0.3, 2.5, 4.0, 5.6}) {
+      for (const double delta_phi : {2.9, 0.7}) pairs.push_back({theta, 0.8, delta_phi, phi});
+    }
+  }
+  for (const int parts : {0, 1, 2, 4}) {
+    SCOPED_TRACE(parts);
+    Tensors tensors = random_tensors(parts == 0 ? std::vector<float>() : azimuths_over(parts), {}, 9);
+    write_file(path(), file_of(tensors));
+    expect_reference_values(path(), pairs, parts);
+  }
+}
+
 TEST_F(Rgl, RepeatsAndMirrorsWhatWasMeasured) {
   const auto values_at = [&](int parts, const Directions& pair) {
     Tensors tensors = random_tensors(azimuths_over(parts), {}, 7);

@@ -273,7 +273,7 @@ class VisibleNormals {
   }
 
  private:
-  static constexpr std::size_t kBlock = 16;  // nodes between sums that are kept: sums of all would be slow to load
+  static constexpr std::size_t kBlock = 4;  // nodes between sums that are kept: sums of all would be slow to load
 
   void add_slice(std::string_view content, std::size_t slice) {
     for (std::size_t row = slice * grids_.height; row < (slice + 1) * grids_.height; ++row) {
@@ -319,12 +319,31 @@ class VisibleNormals {
   std::vector<double> across_;  // integrals from the first row on, [slice][row]
 };
 
-/// L and H of a pair: on grids over phi_i the light is turned and mirrored into the part that was measured.
-struct Geometry {
-  double theta_in;
-  double phi_in;
-  double theta_half;
-  double phi_half;
+/// Signs that turn and mirror all directions so that the light's is in the part of a turn that was measured.
+struct Symmetry {
+  double x = 1;
+  double y = 1;
+};
+
+/// What an evaluation needs of the light: the directions about it that were measured, and its share of the Jacobian.
+struct Light {
+  double theta;
+  double azimuth;  // 0 where files are isotropic
+  double sin_theta;
+  double cos_theta;
+  Symmetry symmetry;
+  double x;  // of the azimuth, turned and mirrored
+  double y;
+  double phi;  // of that
+  double jacobian;
+  std::array<Share, 4> shares;
+  std::size_t count;
+};
+
+/// Angles of H, in that part too.
+struct Half {
+  double theta;
+  double phi;
 };
 
 double to_unit(double theta) {
@@ -365,7 +384,14 @@ class RglFile {
   [[nodiscard]] BrdfValues at(std::span<const Directions> pairs) const {
     BrdfValues values;
     values.value.resize(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(channels_));
-    for (std::size_t i = 0; i < pairs.size(); ++i) evaluate(pairs[i], values.value.row(static_cast<Eigen::Index>(i)));
+    Light light{};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const Directions& pair = pairs[i];
+      const double azimuth = is_isotropic() ? 0 : pair.phi_in;
+      // Integrals over the viewer ask for one light again and again.
+      if (i == 0 || pair.theta_in != light.theta || azimuth != light.azimuth) light = light_of(pair.theta_in, azimuth);
+      evaluate(light, pair, values.value.row(static_cast<Eigen::Index>(i)));
+    }
     return values;
   }
 
@@ -453,34 +479,47 @@ class RglFile {
     }
   }
 
-  [[nodiscard]] Geometry geometry_of(const Directions& pair) const {
-    constexpr double kOpen = 1e-12;  // sine of the angle between H and the normal, of which rounding makes an azimuth
-    const double azimuth = is_isotropic() ? 0 : pair.phi_in;
-    double x_in = std::cos(azimuth);
-    double y_in = std::sin(azimuth);
-    double x_out = std::cos(azimuth + pair.delta_phi);
-    double y_out = std::sin(azimuth + pair.delta_phi);
-    if (parts_ >= 2 && !std::signbit(y_in)) {
-      y_in = -y_in;
-      y_out = -y_out;
-      if (parts_ == 2) {
-        x_in = -x_in;
-        x_out = -x_out;
+  [[nodiscard]] Symmetry symmetry_of(double azimuth) const {
+    Symmetry sign;
+    if (parts_ >= 2 && !std::signbit(std::sin(azimuth))) {
+      sign.y = -1;
+      if (parts_ == 2) sign.x = -1;
+    }
+    if (parts_ == 4 && !std::signbit(std::cos(azimuth))) sign.x = -1;
+    return sign;
+  }
+
+  [[nodiscard]] Light light_of(double theta, double azimuth) const {
+    Light light{};
+    light.theta = theta;
+    light.azimuth = azimuth;
+    light.sin_theta = std::sin(theta);
+    light.cos_theta = std::cos(theta);
+    light.symmetry = symmetry_of(azimuth);
+    light.x = light.symmetry.x * std::cos(azimuth);
+    light.y = light.symmetry.y * std::sin(azimuth);
+    light.phi = is_isotropic() ? 0 : std::atan2(light.y, light.x);
+    for (const auto& [p, weight_p] : shares_of(phi_, light.phi)) {
+      for (const auto& [t, weight_t] : shares_of(theta_, theta)) {
+        if (weight_p * weight_t > 0) light.shares[light.count++] = {p * theta_.size() + t, weight_p * weight_t};
       }
     }
-    if (parts_ == 4 && !std::signbit(x_in)) {
-      x_in = -x_in;
-      x_out = -x_out;
+    light.jacobian = 1;
+    if (has_jacobian_) {
+      const Place place{to_unit(theta), turn_to_unit(light.phi)};
+      light.jacobian = 1 / (4 * Patch(visible_area_, place).mean(tensors_.file().content(), visible_area_));
     }
-    const double sin_in = std::sin(pair.theta_in);
+    return light;
+  }
+
+  [[nodiscard]] Half half_of(const Light& light, const Directions& pair, double cos_out) const {
+    constexpr double kOpen = 1e-12;  // sine of the angle between H and the normal, of which rounding makes an azimuth
     const double sin_out = std::sin(pair.theta_out);
-    const double x = sin_in * x_in + sin_out * x_out;
-    const double y = sin_in * y_in + sin_out * y_out;
-    const double z = std::cos(pair.theta_in) + std::cos(pair.theta_out);
-    const double radius = std::hypot(x, y);
-    const double phi_in = is_isotropic() ? 0 : std::atan2(y_in, x_in);
-    return {pair.theta_in, phi_in, std::atan2(radius, z),
-            radius < kOpen * std::hypot(radius, z) ? phi_in : std::atan2(y, x)};
+    const double x = light.sin_theta * light.x + sin_out * light.symmetry.x * std::cos(light.azimuth + pair.delta_phi);
+    const double y = light.sin_theta * light.y + sin_out * light.symmetry.y * std::sin(light.azimuth + pair.delta_phi);
+    const double z = light.cos_theta + cos_out;
+    const double radius = std::sqrt(x * x + y * y);
+    return {std::atan2(radius, z), radius < kOpen * z ? light.phi : std::atan2(y, x)};
   }
 
   /// Two nodes of an axis about a value, or one twice, with their weights; constant beyond both ends.
@@ -493,25 +532,14 @@ class RglFile {
   }
 
   template <typename Row>
-  void evaluate(const Directions& pair, Row row) const {
+  void evaluate(const Light& light, const Directions& pair, Row row) const {
     const std::string_view content = tensors_.file().content();
-    const Geometry geometry = geometry_of(pair);
-    std::array<Share, 4> shares{};
-    std::size_t count = 0;
-    for (const auto& [p, weight_p] : shares_of(phi_, geometry.phi_in)) {
-      for (const auto& [t, weight_t] : shares_of(theta_, geometry.theta_in)) {
-        if (weight_p * weight_t > 0) shares[count++] = {p * theta_.size() + t, weight_p * weight_t};
-      }
-    }
-    const std::span<const Share> lights = std::span(shares).first(count);
-
-    const Place half{to_unit(geometry.theta_half), turn_to_unit(geometry.phi_half)};
-    double factor = 1 / std::cos(pair.theta_out);
-    if (has_jacobian_) {
-      const Place light{to_unit(geometry.theta_in), turn_to_unit(geometry.phi_in)};
-      factor *= Patch(normals_of_surface_, half).mean(content, normals_of_surface_) /
-                (4 * Patch(visible_area_, light).mean(content, visible_area_));
-    }
+    const std::span<const Share> lights = std::span(light.shares).first(light.count);
+    const double cos_out = std::cos(pair.theta_out);
+    const auto [theta, phi] = half_of(light, pair, cos_out);
+    const Place half{to_unit(theta), turn_to_unit(phi)};
+    double factor = light.jacobian / cos_out;
+    if (has_jacobian_) factor *= Patch(normals_of_surface_, half).mean(content, normals_of_surface_);
     const Patch patch(values_, normals_.uniform(content, half, lights));
     for (std::size_t c = 0; c < channels_; ++c) {
       double sum = 0;
