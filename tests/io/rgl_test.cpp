@@ -424,6 +424,17 @@ TEST_F(Rgl, HasTheValuesOfAnIndependentEvaluationForLightsThatComeAgain) {
   }
 }
 
+TEST_F(Rgl, HasOneValueForBothZerosOfTheAzimuth) {
+  Tensors tensors = random_tensors(azimuths_over(2), {}, 10);
+  write_file(path(), file_of(tensors));
+  const BrdfFunction brdf = load_measured(path());
+  const Directions plus{0.6, 0.9, 0.4, 0.0};
+  const Directions minus{0.6, 0.9, 0.4, -0.0};
+  const auto values = brdf.at(std::vector{plus, minus, Directions{0.5, 0.9, 0.4, 1}, minus}).value;
+  EXPECT_EQ(values.row(0), values.row(1));
+  EXPECT_EQ(values.row(0), values.row(3));
+}
+
 TEST_F(Rgl, RepeatsAndMirrorsWhatWasMeasured) {
   const auto values_at = [&](int parts, const Directions& pair) {
     Tensors tensors = random_tensors(azimuths_over(parts), {}, 7);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "energy/albedo.hpp"
+#include "energy/row_kernel.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/energy/plausibility.hpp"
@@ -18,6 +19,7 @@
 #include "support/device.hpp"
 #include "support/estimates.hpp"
 #include "support/functions.hpp"
+#include "support/tables.hpp"
 #include "table/evaluate.hpp"
 
 namespace lobe::test {
@@ -153,6 +155,39 @@ TEST(LargestAlbedoOfAFunction, IsFoundOnANarrowHillBesideAWideOne) {
     EXPECT_NEAR(found.largest.value, 0.6, found.largest.error) << at_tent;
     EXPECT_LE(found.largest.error, 0.01) << at_tent;
   }
+}
+
+// Albedos of 0.5 near the normal, and of 0.49 beyond that may be 0.54.
+TEST(LargestAlbedoOfAFunction, MayBeThatOfALessCertainOne) {
+  auto function = function_of([](const Directions& at) { return (at.theta_in < 0.8 ? 0.5 : 0.49) / pi; });
+  function.at = [values = function.at](std::span<const Directions> pairs) {
+    BrdfValues found = values(pairs);
+    found.error.resizeLike(found.value);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      found.error(static_cast<Eigen::Index>(k), 0) = pairs[k].theta_in < 0.8 ? 0 : 0.05 / pi;
+    }
+    return found;
+  };
+  for (const Estimate& largest :
+       {check_plausibility(device(), function, {.with_mean_albedo = false}).channels.front().albedo.largest,
+        largest_albedo(device(), function).front().albedo}) {
+    EXPECT_NEAR(largest.value, 0.5, 1e-3);
+    EXPECT_GE(largest.error, 0.04);
+    EXPECT_LE(largest.error, 0.055);
+  }
+}
+
+TEST(LargestAlbedoOfATable, MayBeThatOfALessCertainOne) {
+  BrdfTable table = table_of("lambert:scale=0.5");
+  const auto& rings = table.grid.rings();
+  const auto is_certain = [&](std::size_t row) { return rings[row].theta < 0.8; };
+  multiply_rows(
+      table, 0, [&](std::size_t in, std::size_t) { return is_certain(in) ? 1 : 0.98; },
+      [&](std::size_t in, std::size_t) { return is_certain(in) ? 0 : 0.1; });
+  const Estimate largest = largest_albedo(device(), table).front().albedo;
+  EXPECT_NEAR(largest.value, 0.5, 1e-3);
+  EXPECT_GE(largest.error, 0.035);
+  EXPECT_LE(largest.error, 0.07);
 }
 
 TEST(LargestAlbedoOfAFunction, EndsAtTheLargestAngleThatIsAskedFor) {

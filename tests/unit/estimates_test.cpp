@@ -453,13 +453,40 @@ TEST(AlbedosWithinATolerance, AreTriedAgainButThoseWithoutNodesLeft) {
     return found;
   };
 
-  const std::vector<AlbedoOutcome> found = within(albedos_at, 2, 1e-4, 1e-12);
+  const std::vector<AlbedoOutcome> found = albedos_within(albedos_at, 2, 1e-4, 1e-12);
 
   EXPECT_EQ(asked, (std::vector<std::vector<std::size_t>>{{0, 1}, {1}}));
   EXPECT_FALSE(found[0].is_reached);
   EXPECT_TRUE(found[1].is_reached);
   expect_near(found[0].worst, 5e-4 + 1e-12);
   expect_near(found[1].worst, 5e-5 + 1e-12);
+}
+
+TEST(AlbedosWithinATolerance, AreTriedThreeTimesEachTimeTenTimesStricter) {
+  std::vector<double> goals;
+  double rounding = 1e-12;
+  double value = 1;
+  const AlbedosAtGoal albedos_at = [&](std::span<const std::size_t>, double goal) {
+    goals.push_back(goal);
+    return AlbedoValues{Eigen::ArrayXXd::Constant(1, 1, value), Eigen::ArrayXXd::Ones(1, 1),
+                        Eigen::ArrayXXd::Ones(1, 1), Eigen::Array<bool, 1, 1>(false)};
+  };
+
+  const AlbedoOutcome unmet = albedos_within(albedos_at, 1, 1e-4, rounding).front();
+  EXPECT_TRUE(unmet.is_finite);
+  EXPECT_FALSE(unmet.is_reached);
+  EXPECT_TRUE(unmet.is_divergent);
+  ASSERT_EQ(goals.size(), 3U);
+  for (std::size_t k = 0; k < goals.size(); ++k) EXPECT_NEAR(goals[k], 1e-4 * std::pow(0.1, k), 1e-12) << k;
+
+  // Where rounding is more than the tolerance no stricter quadrature helps, and nothing makes a number of what is none.
+  for (const double other : {1e-9, std::numeric_limits<double>::infinity()}) {
+    goals.clear();
+    value = other;
+    const AlbedoOutcome found = albedos_within(albedos_at, 1, 1e-4, rounding).front();
+    EXPECT_EQ(goals.size(), 1U) << other;
+    EXPECT_EQ(found.is_finite, std::isfinite(other)) << other;
+  }
 }
 
 /// A part by rules of 4, 8, ... nodes.

@@ -69,8 +69,8 @@ AlbedoOutcome outcome_of(const AlbedoValues& found, Index column, double roundin
 
 }  // namespace
 
-std::vector<AlbedoOutcome> within(const AlbedosAtGoal& albedos_at, std::size_t count, double tolerance,
-                                  double rounding) {
+std::vector<AlbedoOutcome> albedos_within(const AlbedosAtGoal& albedos_at, std::size_t count, double tolerance,
+                                          double rounding) {
   constexpr int kAttempts = 3;
   const double goal = std::max(tolerance, 2 * rounding);
   std::vector<AlbedoOutcome> outcomes(count);
@@ -81,11 +81,13 @@ std::vector<AlbedoOutcome> within(const AlbedosAtGoal& albedos_at, std::size_t c
     const AlbedoValues found = albedos_at(open, strictness * goal);
     std::vector<std::size_t> unmet;
     for (std::size_t i = 0; i < open.size(); ++i) {
+      const auto column = static_cast<Index>(i);
       AlbedoOutcome& outcome = outcomes[open[i]];
-      outcome = outcome_of(found, static_cast<Index>(i), rounding, goal);
-      const bool is_exhausted = found.is_exhausted(static_cast<Index>(i));
-      if (outcome.is_finite && !outcome.is_reached && !is_exhausted) unmet.push_back(open[i]);
+      outcome = outcome_of(found, column, rounding, goal);
+      const bool is_rounding = (rounding * found.magnitude.col(column) > goal * found.value.col(column).abs()).any();
+      if (!outcome.is_reached && !is_rounding && !found.is_exhausted(column)) unmet.push_back(open[i]);
     }
+    if (!std::ranges::all_of(outcomes, &AlbedoOutcome::is_finite)) break;
     open = std::move(unmet);
   }
   return outcomes;
@@ -121,7 +123,7 @@ class AdaptiveAlbedo::Integral {
     return values_;
   }
 
-  /// Spent on all directions.
+  /// The number of nodes spent on all directions.
   [[nodiscard]] std::uint64_t nodes() const { return std::accumulate(nodes_.begin(), nodes_.end(), std::uint64_t{0}); }
 
  private:
@@ -368,7 +370,7 @@ std::vector<AlbedoOutcome> AdaptiveAlbedo::within(std::span<const IncidentNode> 
     for (const std::size_t k : some) nodes.push_back(incident[k]);
     return at(nodes, goal, most_nodes);
   };
-  return lobe::within(albedos_at, incident.size(), tolerance, rounding_);
+  return albedos_within(albedos_at, incident.size(), tolerance, rounding_);
 }
 
 }  // namespace lobe

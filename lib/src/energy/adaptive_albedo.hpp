@@ -25,7 +25,7 @@ struct AlbedoValues {
   Eigen::Array<bool, Eigen::Dynamic, 1> is_exhausted;  ///< directions that have taken all the nodes that they may
 };
 
-/// What has been found of one albedo, or mean of albedos, by channel.
+/// The outcome for one albedo, or mean of albedos, by channel.
 struct AlbedoOutcome {
   std::vector<Estimate> values;
   double worst = 0;           ///< largest relative error
@@ -34,14 +34,15 @@ struct AlbedoOutcome {
   bool is_divergent = false;  ///< whether refinement has not even settled the size
 };
 
-/// Some of many albedos to an error relative to each.
+/// Computes some of many albedos to an error relative to each.
 using AlbedosAtGoal = std::function<AlbedoValues(std::span<const std::size_t> some, double goal)>;
 
-/// Many albedos to a tolerance. Those that miss it, because sums cancel or their size was misjudged, are tried two
-/// times more, each time ten times stricter.
-/// \param rounding relative error beside that of the quadrature; no tolerance is below twice that
-[[nodiscard]] std::vector<AlbedoOutcome> within(const AlbedosAtGoal& albedos_at, std::size_t count, double tolerance,
-                                                double rounding);
+/// Computes many albedos to a tolerance. Those that miss it, because sums cancel or their size was misjudged, are tried
+/// two times more, each time ten times stricter; not those of which rounding alone is more. Ends where some are no
+/// finite numbers.
+/// \param rounding error beside that of the quadrature, relative to the magnitude; no tolerance is below twice that
+[[nodiscard]] std::vector<AlbedoOutcome> albedos_within(const AlbedosAtGoal& albedos_at, std::size_t count,
+                                                        double tolerance, double rounding);
 
 /// Albedos of one material by nested adaptive quadrature: of the panels of AlbedoRule, or of HalfVectorRule for
 /// anisotropic lobes, those are halved whose estimated error is too large. What a panel's rules may miss by chance
@@ -55,14 +56,15 @@ class AdaptiveAlbedo {
   [[nodiscard]] const AlbedoRule& rule() const { return rule_; }
   [[nodiscard]] LobeExtent extent() const { return lobes_.extent(); }
   [[nodiscard]] bool is_isotropic() const { return is_isotropic_; }
-  /// Quadrature nodes so far.
+  /// The number of quadrature nodes so far.
   [[nodiscard]] std::uint64_t nodes() const { return nodes_; }
 
   /// Albedos at incident directions.
   /// \param goal error wanted, relative to the albedo
   /// \param most_nodes per direction; what is not resolved by then is in the error
   [[nodiscard]] AlbedoValues at(std::span<const IncidentNode> incident, double goal, std::size_t most_nodes);
-  /// Albedos at incident directions to a tolerance, as the function of this name has them.
+  /// Albedos at incident directions to a tolerance; see albedos_within().
+  /// \param most_nodes per direction and attempt
   [[nodiscard]] std::vector<AlbedoOutcome> within(std::span<const IncidentNode> incident, double tolerance,
                                                   std::size_t most_nodes);
 

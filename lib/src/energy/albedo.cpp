@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -206,7 +205,7 @@ std::vector<Estimate> mean_albedo(const Device& device, const Material& material
     const AlbedosAtGoal mean_at = [&](std::span<const std::size_t>, double goal) {
       return AdaptiveMean(adaptive, goal).result();
     };
-    AlbedoOutcome outcome = within(mean_at, 1, options.tolerance, adaptive.rounding()).front();
+    AlbedoOutcome outcome = albedos_within(mean_at, 1, options.tolerance, adaptive.rounding()).front();
     if (!outcome.is_finite) refuse_not_finite("mean albedo", material);
     if (!outcome.is_reached) tell_missed(outcome, {.quantity = "mean albedo"}, material, options);
     return std::move(outcome.values);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -45,7 +46,10 @@ class BoundSearch {
   AlbedoBounds result() {
     scan();
     AlbedoBounds bounds;
-    for (std::size_t c = 0; c < material_.channels(); ++c) bounds.channels.push_back(bound(c));
+    for (std::size_t c = 0; c < material_.channels(); ++c) {
+      bounds.channels.push_back(bound(c));
+      bounds.certain.push_back(certain_);
+    }
     bounds.incident = incident_;
     bounds.unresolved = unresolved_;
     bounds.least_elevation = grazing_.back();
@@ -138,12 +142,14 @@ class BoundSearch {
   AlbedoBound bound(std::size_t channel) {
     const Sample& top = highest(channel);
     AlbedoBound bound{top.albedos[channel], {pi / 2 - top.elevation, top.azimuth}, growth(channel)};
+    certain_ = certain(top, channel);
     if (bound.growth) return bound;
     sharpen_candidates(channel);
-    upper_ = 0;
+    upper_ = -std::numeric_limits<double>::infinity();
     for (const Sample& sample : samples_) note_upper(sample, channel);
     const Sample best = refined(highest(channel), channel);
     bound.largest = best.albedos[channel];
+    certain_ = certain(best, channel) - change_;
     // An albedo that is less certain may be larger.
     bound.largest.error = std::max(bound.largest.error, upper_ - bound.largest.value) + change_;
     bound.at = {pi / 2 - best.elevation, best.azimuth};
@@ -239,6 +245,7 @@ class BoundSearch {
   std::vector<double> grazing_;  // elevations, falling
   std::vector<Sample> samples_;  // the scan, then the grazing ones by azimuth
   double change_ = 0;            // by the last round of the search
+  double certain_ = 0;           // what the largest albedo of a channel is at least
   double upper_ = 0;             // how large an albedo may be at most, of those looked at
   std::size_t incident_ = 0;
   std::size_t unresolved_ = 0;

@@ -13,6 +13,7 @@ namespace lobe {
 /// Least upper bounds of the albedos of a material, by channel, and how they were looked for.
 struct AlbedoBounds {
   std::vector<AlbedoBound> channels;
+  std::vector<double> certain;  ///< by channel: what the largest albedo is at least
   std::size_t incident = 0;
   std::size_t unresolved = 0;
   double least_elevation = 0;

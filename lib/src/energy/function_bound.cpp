@@ -90,6 +90,11 @@ class FunctionBoundSearch {
     return sample.sums.quadrature(static_cast<Index>(channel));
   }
 
+  /// Of the quadrature and of the function's own values; NaN where that of the values is not known.
+  [[nodiscard]] static double error_of(const Sample& sample, std::size_t channel) {
+    return quadrature(sample, channel) + sample.sums.own(static_cast<Index>(channel));
+  }
+
   [[nodiscard]] Place highest(std::size_t channel) const {
     return std::ranges::max_element(samples_, {}, [&](const auto& one) { return merit(one.second, channel); })->first;
   }
@@ -124,8 +129,16 @@ class FunctionBoundSearch {
       }
     }
     const Sample& top = samples_.at(best);
-    const double own = top.sums.own(static_cast<Index>(channel));
-    return {{merit(top, channel), quadrature(top, channel) + own + beyond}, {pi / 2 - best.first, best.second}, {}};
+    const double error = error_of(top, channel);
+    // An albedo that is less certain may be larger.
+    double upper = -std::numeric_limits<double>::infinity();
+    for (const auto& [place, sample] : samples_) {
+      const double other = error_of(sample, channel);
+      if (!std::isnan(other)) upper = std::max(upper, merit(sample, channel) + other);
+    }
+    return {{merit(top, channel), std::max(error, upper - merit(top, channel)) + beyond},
+            {pi / 2 - best.first, best.second},
+            {}};
   }
 
   /// A place of the scan that is not below its neighbours, and what the albedo beside it may be at most.
@@ -240,6 +253,7 @@ FunctionBounds bounds_of_rings(const BrdfFunction& function, const FunctionSearc
     AlbedoBound& bound = bounds.channels.emplace_back();
     bounds.certain.push_back(-std::numeric_limits<double>::infinity());
     bound.largest.value = bounds.certain.back();
+    double upper = bounds.certain.back();
     for (std::size_t ring = 0; ring < cells.rings; ++ring) {
       const auto sine = [&](double share) { return (static_cast<double>(ring) + share) / rings; };
       if (sine(0) > std::cos(how.least_elevation)) break;
@@ -247,8 +261,10 @@ FunctionBounds bounds_of_rings(const BrdfFunction& function, const FunctionSearc
       Estimate found = albedo(cells, c, theta);
       if (how.of_absolute) found.value = std::abs(found.value);
       bounds.certain.back() = std::max(bounds.certain.back(), found.value - found.error);
+      upper = std::max(upper, found.value + found.error);
       if (found.value > bound.largest.value) bound = {found, {theta, 0}, {}};
     }
+    bound.largest.error = std::max(bound.largest.error, upper - bound.largest.value);
   }
   bounds.incident = cells.rings;
   return bounds;

@@ -61,21 +61,23 @@ std::vector<std::vector<Estimate>> first_albedos(const AlbedosAt& albedos_at, co
 }
 
 /// Searches between the neighbours of the highest of some angles, again and again. At a smooth maximum the last
-/// refinement changes the value by sixteen times what is still missing.
+/// refinement changes the value by sixteen times what is still missing; an albedo that is less certain may be larger.
 AlbedoPeak refined(const AlbedosAt& albedos_at, std::size_t channel, std::vector<double> angles,
                    std::vector<Estimate> albedos, const AlbedoOptions& options) {
   double change = 0;
+  double upper = 0;
   AlbedoPeak peak;
   for (int step = 0;; ++step) {
     const std::size_t at = highest(albedos);
     const double value = std::abs(albedos[at].value);
+    for (const Estimate& albedo : albedos) upper = std::max(upper, std::abs(albedo.value) + albedo.error);
     change = step == 0 ? 0 : std::abs(value - peak.albedo.value);
     peak = {{value, albedos[at].error}, angles[at]};
     if (step == kRefinements) break;
     angles = equally_spaced(angles[at == 0 ? 0 : at - 1], angles[std::min(at + 1, angles.size() - 1)], kAngles);
     albedos = albedos_at(angles, options)[channel];
   }
-  peak.albedo.error += change;
+  peak.albedo.error = std::max(peak.albedo.error, upper - peak.albedo.value) + change;
   return peak;
 }
 

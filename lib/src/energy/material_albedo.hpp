@@ -27,8 +27,6 @@ class MaterialAlbedo {
   /// Relative error beside that of the quadrature.
   [[nodiscard]] double rounding() const { return rounding_; }
   [[nodiscard]] const AlbedoRule& rule() const { return integrator_.rule(); }
-  [[nodiscard]] LobeExtent extent() const { return lobes_.extent(); }
-  [[nodiscard]] const WorkDone& work() const { return work_; }
   [[nodiscard]] bool hides_jumps() const { return lobes_.has_hidden_jumps(); }
 
   [[nodiscard]] Eigen::MatrixXd at(std::span<const IncidentNode> incident, int level);

@@ -161,8 +161,8 @@ class ModelCheck {
 
   [[nodiscard]] bool is_worth_pursuing() const {
     constexpr double kLarge = 10;  // above, how large it is tells nothing
-    const AlbedoBound& worst = result_.albedo.found.albedo;
-    return !worst.growth && worst.largest.value > 1 + worst.largest.error && worst.largest.value < kLarge;
+    const ChannelPlausibility& worst = result_.albedo.found;
+    return !worst.albedo.growth && !worst.conserves_energy && worst.albedo.largest.value < kLarge;
   }
 
   void look_beside(std::vector<double> values, std::size_t parameter, double step) {

@@ -205,8 +205,7 @@ Plausibility check_plausibility(const Device& device, const Material& material, 
     ChannelPlausibility& channel = result.channels[c];
     channel.albedo = bounds.channels[c];
     if (!means.empty()) channel.mean_albedo = means[c];
-    channel.conserves_energy =
-        !channel.albedo.growth && channel.albedo.largest.value - channel.albedo.largest.error <= 1;
+    channel.conserves_energy = !channel.albedo.growth && bounds.certain[c] <= 1;
   }
   if (!split.smooth.terms.empty()) {
     const ValueCheck values(device, split.smooth, isotropic, options.pairs);

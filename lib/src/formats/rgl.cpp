@@ -273,7 +273,8 @@ class VisibleNormals {
   }
 
  private:
-  static constexpr std::size_t kBlock = 4;  // nodes between sums that are kept: sums of all would be slow to load
+  // Nodes between sums that are kept. Sums of all would take twice as much memory as the densities.
+  static constexpr std::size_t kBlock = 4;
 
   void add_slice(std::string_view content, std::size_t slice) {
     for (std::size_t row = slice * grids_.height; row < (slice + 1) * grids_.height; ++row) {
@@ -325,7 +326,7 @@ struct Symmetry {
   double y = 1;
 };
 
-/// What an evaluation needs of the light: the directions about it that were measured, and its share of the Jacobian.
+/// A light, the directions about it that were measured, and its share of the Jacobian.
 struct Light {
   double theta;
   double azimuth;  // 0 where files are isotropic
@@ -387,7 +388,8 @@ class RglFile {
     Light light{};
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const Directions& pair = pairs[i];
-      const double azimuth = is_isotropic() ? 0 : pair.phi_in;
+      const double azimuth =
+          is_isotropic() ? 0 : pair.phi_in + 0.0;  // 0 for -0, which is on the other side of a mirror
       // Integrals over the viewer ask for one light again and again.
       if (i == 0 || pair.theta_in != light.theta || azimuth != light.azimuth) light = light_of(pair.theta_in, azimuth);
       evaluate(light, pair, values.value.row(static_cast<Eigen::Index>(i)));

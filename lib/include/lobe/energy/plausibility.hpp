@@ -29,8 +29,9 @@ struct PlausibilityOptions {
   /// For anisotropic materials over half a turn; for functions, and materials that half a turn about the normal
   /// changes, twice as many over a turn.
   std::size_t azimuths = 6;
-  std::size_t most_nodes = 1'000'000;  ///< quadrature nodes for each albedo, at least 1; some more are used at the end
-  bool with_mean_albedo = true;        ///< whether to compute the mean albedo (white furnace), too
+  /// Quadrature nodes after which an albedo is no longer refined, at least 1; three times as many where sums cancel.
+  std::size_t most_nodes = 1'000'000;
+  bool with_mean_albedo = true;  ///< whether to compute the mean albedo (white furnace), too
 };
 
 /// The difference between f(L, V) and f(V, L).
@@ -45,8 +46,10 @@ struct ReciprocityDefect {
 
 /// The least upper bound of the albedo, as far as the search found it.
 struct AlbedoBound {
-  Estimate largest;  ///< the largest albedo found; its error includes that of the search
-  Direction at;      ///< its place, radians
+  /// The largest albedo found. Its error includes that of the search, and by how much less certain albedos may be
+  /// larger.
+  Estimate largest;
+  Direction at;  ///< its place, radians
   /// Exponent p, with its error, if the albedo grows as (N.L)^-p towards grazing incidence. The largest albedo found
   /// then means nothing.
   std::optional<Estimate> growth;
@@ -59,9 +62,10 @@ struct ChannelPlausibility {
   AlbedoBound albedo;                   ///< the largest albedo
   std::optional<Estimate> mean_albedo;  ///< the result of a white furnace; none if not requested or not computable
 
-  bool is_non_negative = true;   ///< whether no value is below 0 by more than its error
-  bool is_reciprocal = true;     ///< whether the defect is within rounding, for tables within their errors
-  bool conserves_energy = true;  ///< whether no albedo is above 1 by more than its error, and none grows without bound
+  bool is_non_negative = true;  ///< whether no value is below 0 by more than its error
+  bool is_reciprocal = true;    ///< whether the defect is within rounding, for tables within their errors
+  /// Whether no albedo is above 1 by more than its own error and that of the search, and none grows without bound.
+  bool conserves_energy = true;
   /// Whether none of these three is violated.
   [[nodiscard]] bool is_plausible() const { return is_non_negative && is_reciprocal && conserves_energy; }
 };

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "energy/albedo.hpp"
+#include "energy/adaptive_albedo.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
@@ -59,12 +59,18 @@ Estimate entry(const BrdfValues& values, std::size_t pair, std::size_t channel) 
 
 std::vector<std::vector<Estimate>> albedos_of(const Device& device, const Material& material,
                                               std::span<const double> theta) {
-  try {
-    return albedo(device, material, theta, {.tolerance = kCurveAlbedoTolerance});
-  } catch (const NumericError&) {  // some are infinite
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    return {material.channels(), std::vector<Estimate>(theta.size(), {kNaN, kNaN})};
+  constexpr std::size_t kMostNodes = 100'000;  // of each; the errors say what that leaves
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  std::vector<IncidentNode> incident;
+  for (const double angle : theta) incident.push_back({pi / 2 - angle, 1, 0});
+  AdaptiveAlbedo integral(device, material, Precision::double_precision);
+  const auto outcomes = integral.within(incident, kCurveAlbedoTolerance, kMostNodes);
+  std::vector<std::vector<Estimate>> albedos(material.channels(), std::vector<Estimate>(theta.size(), {kNaN, kNaN}));
+  if (!std::ranges::all_of(outcomes, &AlbedoOutcome::is_finite)) return albedos;
+  for (std::size_t k = 0; k < theta.size(); ++k) {
+    for (std::size_t c = 0; c < albedos.size(); ++c) albedos[c][k] = outcomes[k].values[c];
   }
+  return albedos;
 }
 
 MaterialCurves curves_of(const Device& device, const Material& material, const CurveAngles& angles) {
