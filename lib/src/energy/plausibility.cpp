@@ -29,6 +29,9 @@ constexpr double kPlausibilityRounding = 1e-12;
 /// the width of narrow lobes.
 constexpr double kReciprocityRounding = 1e-8;
 constexpr double kNarrowRounding = 1e-15;
+/// What a largest albedo may be above 1 in materials that were made white: by curves that are off by up to this, of
+/// which errors of albedos know nothing.
+constexpr double kWhite = 2e-6;
 /// Share of a reflectance's mean size, below which values count for less in relative differences.
 constexpr double kSmallShare = 1e-3;
 
@@ -205,7 +208,7 @@ Plausibility check_plausibility(const Device& device, const Material& material, 
     ChannelPlausibility& channel = result.channels[c];
     channel.albedo = bounds.channels[c];
     if (!means.empty()) channel.mean_albedo = means[c];
-    channel.conserves_energy = !channel.albedo.growth && bounds.certain[c] <= 1;
+    channel.conserves_energy = !channel.albedo.growth && bounds.certain[c] <= 1 + kWhite;
   }
   if (!split.smooth.terms.empty()) {
     const ValueCheck values(device, split.smooth, isotropic, options.pairs);

@@ -64,7 +64,8 @@ struct ChannelPlausibility {
 
   bool is_non_negative = true;  ///< whether no value is below 0 by more than its error
   bool is_reciprocal = true;    ///< whether the defect is within rounding, for tables within their errors
-  /// Whether no albedo is above 1 by more than its own error and that of the search, and none grows without bound.
+  /// Whether no albedo is above 1 by more than its own error, that of the search, and the 2e-6 by which the curves of
+  /// adjusted formulas may be off; and none grows without bound.
   bool conserves_energy = true;
   /// Whether none of these three is violated.
   [[nodiscard]] bool is_plausible() const { return is_non_negative && is_reciprocal && conserves_energy; }
