@@ -171,9 +171,9 @@ TEST(LargestAlbedoOfAFunction, MayBeThatOfALessCertainOne) {
   for (const Estimate& largest :
        {check_plausibility(device(), function, {.with_mean_albedo = false}).channels.front().albedo.largest,
         largest_albedo(device(), function).front().albedo}) {
-    EXPECT_NEAR(largest.value, 0.5, 1e-3);
-    EXPECT_GE(largest.error, 0.04);
-    EXPECT_LE(largest.error, 0.055);
+    EXPECT_NEAR(largest.value, 0.5, 1e-3) << largest.value;
+    EXPECT_GE(largest.error, 0.04) << largest.value;
+    EXPECT_LE(largest.error, 0.055) << largest.value;
   }
 }
 
