@@ -177,17 +177,17 @@ TEST(LargestAlbedoOfAFunction, MayBeThatOfALessCertainOne) {
   }
 }
 
+// It falls from 0.5 at the normal, and may be larger again far from there.
 TEST(LargestAlbedoOfATable, MayBeThatOfALessCertainOne) {
   BrdfTable table = table_of("lambert:scale=0.5");
   const auto& rings = table.grid.rings();
-  const auto is_certain = [&](std::size_t row) { return rings[row].theta < 0.8; };
   multiply_rows(
-      table, 0, [&](std::size_t in, std::size_t) { return is_certain(in) ? 1 : 0.98; },
-      [&](std::size_t in, std::size_t) { return is_certain(in) ? 0 : 0.1; });
+      table, 0, [&](std::size_t in, std::size_t) { return 1 - 0.02 * rings[in].theta * rings[in].theta; },
+      [&](std::size_t in, std::size_t) { return rings[in].theta < 1.2 ? 0 : 0.2; });
   const Estimate largest = largest_albedo(device(), table).front().albedo;
   EXPECT_NEAR(largest.value, 0.5, 1e-3);
-  EXPECT_GE(largest.error, 0.035);
-  EXPECT_LE(largest.error, 0.07);
+  EXPECT_GE(largest.error, 0.06);
+  EXPECT_LE(largest.error, 0.15);
 }
 
 TEST(LargestAlbedoOfAFunction, EndsAtTheLargestAngleThatIsAskedFor) {
